@@ -14,6 +14,7 @@
 #include "framework/estimation/ridges/simulated_ridges.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
 
@@ -249,6 +250,9 @@ std::vector<NoiseHypothesis> SimulatorRefiner::listNoise(const NoiseHypothesis& 
 
 std::vector<Ridge> SimulatorRefiner::findRidges(const BoundedDraws& draws, const VectorXd& known) const {
   if (!draws.isGiven() || !simulator_->hasDerivatives()) {
+    return {};
+  }
+  if (Prior(getUnknown(), model_.priors).isUniform() && !mayHaveRidges(draws, model_.parameters)) {
     return {};
   }
   const std::vector<Index> chosen = chooseDraws(draws.weights);

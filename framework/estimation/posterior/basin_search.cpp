@@ -17,13 +17,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Whether a point is within three standard deviations of a basin's minimum.
-bool liesIn(const Basin& basin, const VectorXd& at) {
-  constexpr double kReach = 3.0;
-  const VectorXd apart = at - basin.local.at;
-  return apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)) < kReach * kReach;
-}
-
 bool isExplained(const std::vector<Basin>& basins) {
   return !basins.empty() &&
          basins.front().local.chi_square < calcChiSquareLimit(basins.front().local.degrees);
@@ -103,6 +96,41 @@ MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, con
   return ways(Eigen::all, falls);
 }
 
+/// Places along the flattest direction of basins, both ways as far as the bounds allow, on the floor of its
+/// valley: corrected at right angles to it. Impacts and sticking cut a valley into several hills, each so
+/// narrow that searches from afar end in any of them.
+MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins) {
+  constexpr double kReaches[] = {-8.0, -4.0, 4.0, 8.0};  // standard deviations
+  constexpr std::size_t kMost = 2;
+  constexpr int kIterations = 4;
+  const Index u = surface.getDimensions();
+  MatrixXd places(u, 0), held(u, 0);
+  for (std::size_t k = 0; k < std::min(kMost, basins.size()); ++k) {
+    const linalg::SymmetricEigen axes = linalg::calcSymmetricEigen(basins[k].covariance);
+    const VectorXd flattest = axes.vectors.rightCols(1);
+    for (const double reach : kReaches) {
+      const VectorXd place = basins[k].local.at + reach * std::sqrt(axes.values[u - 1]) * flattest;
+      if (place.cwiseAbs().maxCoeff() <= 1.0) {
+        places.conservativeResize(Eigen::NoChange, places.cols() + 1);
+        places.rightCols(1) = place;
+        held.conservativeResize(Eigen::NoChange, places.cols());
+        held.rightCols(1) = flattest;
+      }
+    }
+  }
+  if (places.cols() == 0) {
+    return places;
+  }
+  SearchTeam team(surface, places, held);
+  team.run(kIterations);
+  const std::vector<LocalSurface> ends = team.listEnds();
+  places.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
+  for (std::size_t k = 0; k < ends.size(); ++k) {
+    places.col(static_cast<Index>(k)) = ends[k].at;
+  }
+  return places;
+}
+
 /// Ends of searches and the starts that are left.
 class BasinHunt {
  public:
@@ -121,9 +149,11 @@ class BasinHunt {
     taken_ += most;
     return starts_.middleCols(taken_ - most, most);
   }
+  int countTaken() const { return static_cast<int>(taken_); }
 
   void search(const MatrixXd& starts) {
     SearchTeam team(surface_, starts);
+    team.setKnown(found_.basins);
     team.run(options_.max_iterations);
     add(team.listEnds());
     found_.starts += static_cast<int>(starts.cols());
@@ -143,6 +173,21 @@ class BasinHunt {
     }
   }
 
+  /// Along the valleys of the best basins, where the scouts did not do, as long as a better one is found
+  /// there.
+  void searchFloors() {
+    constexpr int kMost = 3;
+    for (int i = 0; i < kMost && isExplained() && found_.starts >= options_.starts; ++i) {
+      const double least = found_.basins.front().local.misfit;
+      if (const MatrixXd places = followFloors(surface_, found_.basins); places.cols() > 0) {
+        search(places);
+      }
+      if (!(found_.basins.front().local.misfit < least)) {
+        return;
+      }
+    }
+  }
+
  private:
   void add(std::vector<LocalSurface> ends) {
     ends_.insert(ends_.end(), std::make_move_iterator(ends.begin()), std::make_move_iterator(ends.end()));
@@ -158,6 +203,11 @@ class BasinHunt {
 };
 
 }  // namespace
+
+bool liesIn(const Basin& basin, const VectorXd& at) {
+  const VectorXd apart = at - basin.local.at;
+  return apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)) < kBasinReach * kBasinReach;
+}
 
 MatrixXd calcBasinCovariance(const MatrixXd& information) {
   const Index u = information.rows();
@@ -195,24 +245,32 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
   MatrixXd scouts(surface.getDimensions(), options.scouts + given.cols());
   scouts << hunt.takeStarts(options.scouts), given;
   hunt.search(scouts);
+  while (hunt.isExplained() && !hunt.isConfirmed() && hunt.countTaken() < options.starts) {
+    hunt.search(hunt.takeStarts(std::min(options.scouts, options.starts - hunt.countTaken())));
+  }
   if (hunt.isExplained() && hunt.isConfirmed()) {
     hunt.probe();
     if (hunt.isConfirmed()) {
+      hunt.searchFloors();
       return hunt.getFound();
     }
   }
+  MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
   for (int batch = 0; batch < options.max_batches; ++batch) {
-    const MatrixXd starts = hunt.takeStarts(batch == 0 ? options.starts - options.scouts : options.starts);
+    const MatrixXd starts =
+        hunt.takeStarts(again.cols() > 0 ? options.starts - options.scouts : options.starts);
     hunt.search(starts);
     if (!hunt.isExplained() && surface.countWindows() > 1) {
-      MatrixXd all(starts.rows(), starts.cols() + (batch == 0 ? scouts.cols() : 0));
-      all << starts, scouts.leftCols(all.cols() - starts.cols());
+      MatrixXd all(starts.rows(), starts.cols() + again.cols());
+      all << starts, again;
       hunt.searchWindows(all);
     }
+    again.resize(Eigen::NoChange, 0);
     if (hunt.getFound().basins.empty() || hunt.isConfirmed()) {
       break;
     }
   }
+  hunt.searchFloors();
   return hunt.getFound();
 }
 

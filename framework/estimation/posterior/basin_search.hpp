@@ -14,6 +14,11 @@ struct Basin {
   int searches = 0;            ///< that ended in it
 };
 
+constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
+
+/// Whether a point is within kBasinReach standard deviations of a basin's minimum.
+bool liesIn(const Basin& basin, const Eigen::VectorXd& at);
+
 /// (information + that of the box as a normal distribution)^-1, u x u.
 Eigen::MatrixXd calcBasinCovariance(const Eigen::MatrixXd& information);
 
@@ -28,7 +33,8 @@ struct BasinSearch {
 };
 
 struct BasinSearchOptions {
-  /// Searches before anything is known, of a Sobol sequence as all starts.
+  /// Searches before anything is known, of a Sobol sequence as all starts; as many again and again, up to
+  /// `starts`, where noise explains the best end but too few have found it.
   int scouts = 16;
   /// Where the scouts agree, so many points more are looked at from the basins: a basin that attracts a
   /// twentieth of the box has three of them in it.
@@ -48,7 +54,8 @@ struct BasinSearchOptions {
 /// points all over the box follow, each with the way to it from the nearest basin: if chi-square does not
 /// rise all along the way, a search starts where it falls again. Else more searches follow; where the best
 /// end is not explained by noise and the response has windows that grow (RefinementModel), all are searched
-/// again from windows that grow. `given`: points (u x n, may be empty) to search from as well. The starts
+/// again from windows that grow. Where the scouts did not do, searches follow from the floors of the best
+/// basins' valleys, too. `given`: points (u x n, may be empty) to search from as well. The starts
 /// depend on `seed` alone. Cost: some 10 simulations, 5 of them with derivatives, a search; 3 a probe.
 BasinSearch findBasins(MisfitSurface& surface, const Eigen::MatrixXd& given, std::uint64_t seed,
                        const BasinSearchOptions& options = {});

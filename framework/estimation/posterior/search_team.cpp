@@ -102,12 +102,13 @@ SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const Mat
 }
 
 void SearchTeam::run(int max_iterations) {
-  constexpr int kFirstJudged = 5;  // by then whatever is near a minimum has come down to it
+  // By then whatever is near a minimum has come down to it; what must be better than a known basin, sooner.
+  const int first_judged = known_.empty() ? 5 : 3;
   for (int i = 1; i <= max_iterations && improve(); ++i) {
-    if (i == kFirstJudged || i == 2 * kFirstJudged) {
+    if (i == first_judged || i == 2 * first_judged) {
       giveUpHopeless();
     }
-    if (i >= kFirstJudged) {
+    if (i >= first_judged) {
       giveUpSlow();
     }
   }
@@ -189,8 +190,46 @@ void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
     search.active = reached[i].simulated && predictGain(reached[i], search.held) > kConvergedGain;
     if (reached[i].simulated) {
       search.local = std::move(reached[i]);
+      settle(search);
     }
   }
+}
+
+/// Ends a search that has come into a known basin, both by its place and by its chi-square: a packet of lanes
+/// costs as much for the last searches as for all of them. One that has converged elsewhere makes a basin
+/// known.
+void SearchTeam::settle(Search& search) {
+  if (search.held.size() > 0) {
+    return;
+  }
+  const auto own = std::find_if(known_.begin(), known_.end(), [&](const Basin& basin) {
+    return search.local.misfit >= basin.local.misfit &&
+           search.local.misfit < basin.local.misfit + kBasinReach * kBasinReach &&
+           liesIn(basin, search.local.at);
+  });
+  if (own != known_.end()) {
+    search.local = own->local;
+    search.active = false;
+  } else if (!search.active) {
+    known_.push_back({search.local, calcBasinCovariance(search.local.information), 1});
+  }
+}
+
+/// Of all searches and known basins; null where nothing was simulated.
+const LocalSurface* SearchTeam::findBest() const {
+  const LocalSurface* best = nullptr;
+  const auto compare = [&best](const LocalSurface& local) {
+    if (local.simulated && (best == nullptr || local.misfit < best->misfit)) {
+      best = &local;
+    }
+  };
+  for (const Search& search : searches_) {
+    compare(search.local);
+  }
+  for (const Basin& basin : known_) {
+    compare(basin.local);
+  }
+  return best;
 }
 
 /// Searches far above the best one; a quarter of all is kept whatever it is.
@@ -206,7 +245,8 @@ void SearchTeam::giveUpHopeless() {
     return;
   }
   std::sort(reached.begin(), reached.end());
-  const double near = reached.front() + std::max(kFarAbove, kOfBest * reached.front());
+  const double least = findBest()->misfit;
+  const double near = least + std::max(kFarAbove, kOfBest * least);
   const double limit = std::max(near, reached[reached.size() / 4]);
   for (Search& search : searches_) {
     search.active = search.active && search.local.misfit <= limit;
@@ -216,19 +256,13 @@ void SearchTeam::giveUpHopeless() {
 /// Where noise explains the best: searches far above it that an iteration brought less than half the way.
 void SearchTeam::giveUpSlow() {
   constexpr double kSlow = 0.5;
-  const Search* best = nullptr;
-  for (const Search& search : searches_) {
-    if (search.local.simulated && (best == nullptr || search.local.misfit < best->local.misfit)) {
-      best = &search;
-    }
-  }
-  if (best == nullptr || !(best->local.chi_square < calcChiSquareLimit(best->local.degrees))) {
+  const LocalSurface* best = findBest();
+  if (best == nullptr || !(best->chi_square < calcChiSquareLimit(best->degrees))) {
     return;
   }
   for (Search& search : searches_) {
-    const double above = search.local.misfit - best->local.misfit;
-    search.active =
-        search.active && (above < kFarAbove || above < kSlow * (search.before - best->local.misfit));
+    const double above = search.local.misfit - best->misfit;
+    search.active = search.active && (above < kFarAbove || above < kSlow * (search.before - best->misfit));
   }
 }
 

@@ -3,14 +3,15 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/posterior/misfit_surface.hpp"
+#include "framework/estimation/posterior/basin_search.hpp"
 
 namespace twinmap {
 
 /// Searches for minima of chi-square that go side by side, by Levenberg and Marquardt's method: an iteration
 /// is a batch of simulations, three dampings for each search or one where its linear model held the last
 /// time, and a batch with derivatives for those that moved. Parameters at a bound whose descent points
-/// outwards are held. Searches far above the best are given up.
+/// outwards are held. Searches far above the best are given up; those that come into a basin that another
+/// has found end there, where they are not held.
 class SearchTeam {
  public:
   /// starts: u x n. Search i does not move along column i of `held` (u x n; empty: all move freely).
@@ -18,6 +19,8 @@ class SearchTeam {
   SearchTeam(MisfitSurface& surface, const Eigen::MatrixXd& starts,
              const Eigen::MatrixXd& held = Eigen::MatrixXd());
 
+  /// Basins of the same surface that earlier searches have found. Before run().
+  void setKnown(const std::vector<Basin>& known) { known_ = known; }
   void run(int max_iterations);
 
   /// Where search i is.
@@ -39,11 +42,14 @@ class SearchTeam {
   bool improve();
   std::vector<Search*> listActive();
   void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to);
+  void settle(Search& search);
+  const LocalSurface* findBest() const;
   void giveUpHopeless();
   void giveUpSlow();
 
   MisfitSurface& surface_;
   std::vector<Search> searches_;
+  std::vector<Basin> known_;
 };
 
 }  // namespace twinmap

@@ -350,7 +350,7 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
 double findLeastChiSquare(const PosteriorProblem& problem, int searches) {
   ProblemSurface whole(problem);
   BasinSearchOptions options;
-  options.scouts = options.probes = searches;
+  options.scouts = options.starts = options.probes = searches;
   options.confirmations = searches + 1;  // neither probes nor batches follow
   options.max_batches = 0;
   const BasinSearch found = findBasins(whole.upd(), MatrixXd(whole.upd().getDimensions(), 0), 1, options);

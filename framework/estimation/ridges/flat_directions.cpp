@@ -114,4 +114,9 @@ std::vector<FlatDirections> findFlatDirections(const std::vector<MatrixXd>& info
   return found;
 }
 
+bool mayBeFlat(const MatrixXd& covariance) {
+  constexpr double kBoxVariance = 1.0 / 12.0, kShare = 0.25;
+  return !(linalg::calcSymmetricEigen(covariance).values.maxCoeff() < kShare * kShare * kBoxVariance);
+}
+
 }  // namespace twinmap

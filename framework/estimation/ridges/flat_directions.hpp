@@ -22,4 +22,9 @@ struct FlatDirections {
 std::vector<FlatDirections> findFlatDirections(const std::vector<Eigen::MatrixXd>& information,
                                                const Eigen::MatrixXd& points);
 
+/// Whether there may be flat directions where a posterior with this covariance (p x p, in widths of the
+/// bounds) has its mass and the prior is uniform: none where it is narrower in every direction than a quarter
+/// of what the bounds allow, half of what is flat.
+bool mayBeFlat(const Eigen::MatrixXd& covariance);
+
 }  // namespace twinmap

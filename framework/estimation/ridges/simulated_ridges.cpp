@@ -6,11 +6,13 @@
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 std::vector<MatrixXd> calcInformation(const Simulator& simulator, const FeatureExtractor& extractor,
                                       const FeatureNoise& noise, const ModelSpec& model,
@@ -26,6 +28,12 @@ std::vector<MatrixXd> calcInformation(const Simulator& simulator, const FeatureE
     }
   }
   return information;
+}
+
+bool mayHaveRidges(const BoundedDraws& draws, const std::vector<ParameterSpec>& parameters) {
+  const VectorXd widths = calcWidths(parameters);
+  return mayBeFlat(importance::calcCovariance(
+      {widths.cwiseInverse().asDiagonal() * draws.points.topRows(widths.size()), draws.weights}));
 }
 
 std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,

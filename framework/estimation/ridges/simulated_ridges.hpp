@@ -4,6 +4,7 @@
 
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/noise/feature_noise.hpp"
+#include "framework/estimation/bounded_draws.hpp"
 #include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/simulation/simulator.hpp"
@@ -16,6 +17,10 @@ namespace twinmap {
 std::vector<Eigen::MatrixXd> calcInformation(const Simulator& simulator, const FeatureExtractor& extractor,
                                              const FeatureNoise& noise, const ModelSpec& model,
                                              const Eigen::MatrixXd& points, int threads);
+
+/// Whether draws of a posterior under a uniform prior are spread so far that there may be ridges (mayBeFlat).
+/// The first rows of the draws are `parameters`. Without simulations.
+bool mayHaveRidges(const BoundedDraws& draws, const std::vector<ParameterSpec>& parameters);
 
 /// Ridges as the simulator shows them at points of the sampled box, of which at most 32 are taken.
 std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,

@@ -84,5 +84,27 @@ TEST(SearchTeam, StopsAtABoundWhereDescentLeadsOut) {
   EXPECT_NEAR(team.getLocal(0).at[1], 0.3, 1e-6);
 }
 
+TEST(SearchTeam, EndsInABasinThatIsKnown) {
+  Surface cubic(
+      2,
+      [](const VectorXd& x) {
+        return makeVector({x[0] + 2.0 * x[0] * x[0] * x[0], x[1] - 0.5 * x[0] * x[0]});
+      },
+      testing::makeParameters(2, -1.0, 1.0), 0.02, makeVector({0.2, 0.3}));
+  const VectorXd minimum = makeVector({0.2, 0.3});
+  const auto search = [&](const std::vector<Basin>& known) {
+    const int before = cubic.surface.getSimulations();
+    SearchTeam team(cubic.surface, makeVector({-0.7, 0.9}));
+    team.setKnown(known);
+    team.run(25);
+    return std::pair(cubic.surface.getSimulations() - before, team.getLocal(0).at);
+  };
+  const auto [alone, found] = search({});
+  EXPECT_LT((found - minimum).norm(), 1e-3);
+  const auto [fewer, end] = search(cubic.makeBasins(minimum));
+  EXPECT_LT(fewer, alone);
+  EXPECT_EQ(end, minimum);  // taken from the basin, not found anew
+}
+
 }  // namespace
 }  // namespace twinmap

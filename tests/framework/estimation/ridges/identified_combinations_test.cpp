@@ -163,6 +163,17 @@ TEST(IdentifiedCombinations, NameBaseParametersOfTwoLinks) {
             (Names{"m_2 * L_2", "J_2 + m_2 * L_2^2", "J_1 + 0.09 * m_1 + 0.25 * m_2"}));
 }
 
+TEST(FlatDirections, AreNotWhereAPosteriorIsNarrow) {
+  // along (1, -1) a share of the uniform distribution's standard deviation, across it nothing
+  const auto spread = [](double share) -> MatrixXd {
+    const Eigen::Vector2d along(std::sqrt(0.5), -std::sqrt(0.5));
+    return share * share / 12.0 * along * along.transpose();
+  };
+  EXPECT_TRUE(mayBeFlat(spread(1.0)));
+  EXPECT_TRUE(mayBeFlat(spread(0.3)));
+  EXPECT_FALSE(mayBeFlat(spread(0.2)));
+}
+
 TEST(IdentifiedCombinations, SeparateRidgesThatHaveNothingInCommon) {
   const std::vector<ParameterSpec> parameters{makeParameter("a", "", 1, 3), makeParameter("b", "", 1, 2),
                                               makeParameter("c", "", 1, 3), makeParameter("d", "", 1, 2)};
