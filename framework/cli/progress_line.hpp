@@ -7,6 +7,9 @@
 
 namespace twinmap::cli {
 
+/// Returns to the beginning of a terminal's line and empties it.
+constexpr const char* kClearLine = "\r\x1b[K";
+
 /// "1:02:03", "0:42".
 std::string describeDuration(double seconds);
 

@@ -95,7 +95,7 @@ ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
   if (network != nullptr && network->countComponents() > 1) {
     throw std::runtime_error(
         findMaps(run_or_maps).string() +
-        ": a network whose answers are mixtures cannot be exported; train one with 'head: gaussian'");
+        ": a network whose estimates are mixtures cannot be exported; train one with 'head: gaussian'");
   }
   if (network != nullptr && network->isBayesian()) {
     throw std::runtime_error(findMaps(run_or_maps).string() +

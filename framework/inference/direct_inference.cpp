@@ -43,9 +43,10 @@ std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, co
   }
   const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
     const Eigen::VectorXd features = simulator.getExtractor().extract(corrected);
-    return features.array().isFinite().count() == static_cast<Eigen::Index>(found.available.size())
-               ? simulator.findLeastChiSquare(features, known)
-               : std::numeric_limits<double>::infinity();
+    const auto there = static_cast<double>(features.array().isFinite().count());
+    const auto all = static_cast<double>(found.available.size());
+    return 2.0 * there > all ? simulator.findLeastChiSquare(features, known) * all / there
+                             : std::numeric_limits<double>::infinity();
   };
   return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
 }
@@ -58,6 +59,12 @@ InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, co
                                            const Eigen::VectorXd& known,
                                            const std::vector<ClippedSample>& clipped) const {
   InferredMeasurement inferred;
+  const std::string failure = simulator.findFailure(known);
+  if (!failure.empty()) {
+    inferred.posterior = simulator.makeFailed(features, known, failure);
+    inferred.quantities = quantities_;
+    return inferred;
+  }
   inferred.posterior =
       simulator.samplePosterior(features, known, simulator.describeNoise(clipped), {}, options_);
   inferred.ridges = simulator.findRidges(inferred.posterior->estimate.draws, known);

@@ -15,7 +15,7 @@ fs::path findMaps(const fs::path& run_or_maps) {
     throw std::runtime_error(
         file.string() +
         ": does not exist; give the folder of a finished run, or its maps.h5 (a run with "
-        "'inverse_map: none' has none: only `twinmap infer` answers from it)");
+        "'inverse_map: none' has none: only `twinmap infer` works from it)");
   }
   return file;
 }

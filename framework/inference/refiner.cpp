@@ -14,6 +14,7 @@
 #include "framework/estimation/ridges/simulated_ridges.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/points/point_set.hpp"
 #include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
@@ -184,11 +185,42 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
   return sampled;
 }
 
+std::string SimulatorRefiner::findFailure(const VectorXd& known) const {
+  constexpr Index kPoints = 4;  // the centre of the bounds first
+  const std::vector<ParameterSpec>& unknown = getUnknown();
+  PointSetSpec sobol;
+  sobol.method = DesignMethod::kSobol;
+  sobol.samples = kPoints - 1;
+  const auto u = static_cast<Index>(unknown.size());
+  MatrixXd points(u + known.size(), kPoints);
+  const MatrixXd unit = sampleUnitCube(sobol, static_cast<int>(u), 1, RandomPurpose::kBasinStarts);
+  const VectorXd center = calcBoxCenter(unknown), widths = calcWidths(unknown);
+  points.topRows(u).col(0) = center;
+  for (Index i = 1; i < kPoints; ++i) {
+    points.col(i).head(u) = center.array() + widths.array() * (unit.col(i - 1).array() - 0.5);
+  }
+  points.bottomRows(known.size()).colwise() = known;
+  MatrixXd responses(simulator_->getLayout().getRowCount(), kPoints);
+  std::vector<SampleStatus> statuses(kPoints);
+  own_->simulate(points.leftCols(1), responses.leftCols(1), statuses.data());
+  if (!statuses.front().ok) {
+    own_->simulate(points.rightCols(kPoints - 1), responses.rightCols(kPoints - 1), statuses.data() + 1);
+  }
+  const bool fails =
+      std::none_of(statuses.begin(), statuses.end(), [](const SampleStatus& one) { return one.ok; });
+  return fails ? statuses.front().reason : "";
+}
+
+PosteriorEstimate SimulatorRefiner::makeFailed(const VectorXd& features, const VectorXd& known,
+                                               const std::string& reason) const {
+  SimulatorPosterior posterior;
+  posterior.message = reason;
+  return makeEstimate(makeTrial(features, known), std::move(posterior));
+}
+
 double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const VectorXd& known) const {
-  constexpr int kSearches = 16;
   return twinmap::findLeastChiSquare(
-      {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())},
-      kSearches);
+      {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())});
 }
 
 PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,

@@ -75,7 +75,14 @@ class SimulatorRefiner {
                                     const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
                                     const SimulatorPosteriorOptions& options) const;
 
-  /// The least chi-square that 16 searches from all over the bounds find (findLeastChiSquare).
+  /// Why the simulation fails at the centre of the bounds and, where it does, at three more points of them;
+  /// "" where one succeeds. known: q. Cost: one simulation where it succeeds.
+  std::string findFailure(const Eigen::VectorXd& known) const;
+  /// Of a measurement that nothing can be simulated for, because of `reason`.
+  PosteriorEstimate makeFailed(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                               const std::string& reason) const;
+
+  /// The least chi-square of few searches (twinmap::findLeastChiSquare), to compare gross misfits.
   double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
 
   /// The posterior (samplePosterior), searched from all that is known of the measurement too: the estimator's

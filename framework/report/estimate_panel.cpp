@@ -7,7 +7,7 @@
 namespace twinmap {
 namespace {
 
-constexpr int kRowHeight = 44, kFrame = 10;  // a bar and a line of text above it
+constexpr int kRowHeight = 54, kFrame = 10;  // a bar between two lines of text
 
 std::string describeBounds(const Bounds& bounds) {
   constexpr int kDigits = 4;

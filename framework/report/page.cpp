@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "framework/base/json/json.hpp"
 #include "framework/report/assets.hpp"
 #include "framework/report/figure.hpp"
@@ -122,25 +124,32 @@ std::string makeContents(const Page& page) {
   return makeElement("nav", makeElement("ol", items), "aria-label=\"Contents\"") + "\n";
 }
 
-std::string makeSectionHtml(const Section& section) {
+/// extra: between the heading and what follows.
+std::string makeSectionHtml(const Section& section, const std::string& extra) {
   const std::string heading =
       makeElement("h2", escapeHtml(section.title), "id=\"heading-" + section.id + "\"");
   return "<section id=\"" + section.id + "\" aria-labelledby=\"heading-" + section.id + "\">\n" + heading +
-         "\n" + section.html + "</section>\n";
+         "\n" + extra + section.html + "</section>\n";
 }
 
 std::string makeScript(std::string_view text) {
   return "<script>" + std::string(text) + "</script>\n";
 }
 
-/// The bar that says which samples are highlighted; the script shows it where there are samples.
+/// The bar that says which samples are highlighted, above the figures of test samples; the script shows it
+/// where there are samples, and at the window's edge while some are highlighted.
 constexpr const char* kSelectionBar =
-    R"(<div id="selection" role="region" aria-label="Highlighted samples" hidden>
+    R"(<div class="selection-place"><div id="selection" role="region" aria-label="Highlighted samples" hidden>
 <label>Highlight sample <input id="sample" type="number" min="0" step="1"></label>
 <span id="selection-text" role="status"></span>
 <button type="button" id="clear">Clear</button>
-</div>
+</div></div>
 )";
+
+bool showsSamples(const Section& section) {
+  return std::any_of(section.figures.begin(), section.figures.end(),
+                     [](const Figure& figure) { return figure.table == "samples"; });
+}
 
 }  // namespace
 
@@ -151,8 +160,10 @@ void addFigure(Figure figure, Section& section) {
 
 std::string makePage(const Page& page) {
   std::string body = makeElement("header", makeElement("h1", escapeHtml(page.title))) + "\n";
-  for (std::size_t i = 0; i < page.sections.size(); ++i) {
-    body += makeSectionHtml(page.sections[i]) + (i == 0 ? makeContents(page) : "");
+  const auto selects = std::find_if(page.sections.begin(), page.sections.end(), showsSamples);
+  for (auto section = page.sections.begin(); section != page.sections.end(); ++section) {
+    body += makeSectionHtml(*section, section == selects ? kSelectionBar : "") +
+            (section == page.sections.begin() ? makeContents(page) : "");
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -162,10 +173,9 @@ std::string makePage(const Page& page) {
          makeElement("style", std::string(getReportStyle())) + "\n</head>\n<body>\n<main>\n" + body +
          "<noscript><p>The figures of this page are drawn by its own script, which is switched off.</p>"
          "</noscript>\n" +
-         kSelectionBar + "</main>\n<script type=\"application/json\" id=\"page-data\">" +
-         dumpForScript(makePageData(page)) + "</script>\n" + makeScript(getVegaScript()) +
-         makeScript(getVegaLiteScript()) + makeScript(getVegaEmbedScript()) + makeScript(getReportScript()) +
-         "</body>\n</html>\n";
+         "</main>\n<script type=\"application/json\" id=\"page-data\">" + dumpForScript(makePageData(page)) +
+         "</script>\n" + makeScript(getVegaScript()) + makeScript(getVegaLiteScript()) +
+         makeScript(getVegaEmbedScript()) + makeScript(getReportScript()) + "</body>\n</html>\n";
 }
 
 }  // namespace twinmap

@@ -57,7 +57,7 @@ const std::vector<NoticeText> kStatuses{
      "The model has a symmetry, or its response repeats itself, as an oscillation by another period does."},
     {Notice::kTrialsDisagree, "trials_disagree", true, kMisleading,
      "the {0} recordings disagree ({1}): together they fit worse than each alone, by {2:.4g} of chi-square",
-     "Look at the residuals of the two that are named: the model lacks something.",
+     "Ask what the model lacks: twinmap diagnose FILE RECORDINGS.",
      "Each recording is explained by parameters of its own, as where friction has another shape than the "
      "model's."},
     {Notice::kUncalibrated, "uncalibrated", true, kDegraded,
@@ -78,8 +78,9 @@ const std::vector<NoticeText> kStatuses{
     {Notice::kUnreliable, "unreliable", true, kMisleading, "the posterior cannot be trusted: {0}",
      "Take more draws: --posterior=4000.",
      "Few draws carry most of the weight; means and intervals from them would scatter."},
-    {Notice::kNotSimulated, "not_simulated", true, kMisleading, "no simulation within the bounds succeeded",
-     "Simulate one sample and read the reason: twinmap simulate FILE.",
+    {Notice::kNotSimulated, "not_simulated", true, kMisleading,
+     "no simulation within the bounds succeeded: {0}",
+     "Mend the cause that is named, and try one sample: twinmap simulate FILE.",
      "The solver fails everywhere in the bounds."},
     {Notice::kError, "error", true, kMisleading, "the measurement cannot be used: {0}",
      "Correct what the message names.", "A column, unit, time or value of the file is missing or wrong."}};

@@ -22,11 +22,6 @@ using Eigen::VectorXd;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-std::string describeTime(double t) {
-  constexpr int kDigits = 6;
-  return toShortText(t, kDigits) + " s";
-}
-
 /// The table's rows in that order; columns of other lengths stay as they are, which is found later.
 Table takeRows(const Table& table, Index count, const std::vector<Index>& rows) {
   Table taken = table;

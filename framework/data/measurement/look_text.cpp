@@ -6,15 +6,16 @@
 #include "framework/base/json/json.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/look.hpp"
+#include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {
 namespace {
 
-constexpr int kFewDigits = 4, kTimeDigits = 6;
+constexpr int kFewDigits = 4;
 
 std::string describeFirst(const FoundSamples& found, const char* what) {
-  return fmt::format("{} {}{} ({}{} s)", found.count, what, found.count == 1 ? "" : "s",
-                     found.count == 1 ? "" : "first at ", toShortText(found.first, kTimeDigits));
+  return fmt::format("{} {}{} ({}{})", found.count, what, found.count == 1 ? "" : "s",
+                     found.count == 1 ? "" : "first at ", describeTime(found.first));
 }
 
 /// What is worth a look, a phrase each, with what to do in a recording that is to be inferred from.
@@ -88,8 +89,8 @@ Json toJson(const ColumnLook& column) {
 }  // namespace
 
 std::string makeLookText(const TableLook& look) {
-  std::string text = fmt::format("{}: {} rows, {} s to {} s\n", look.source, look.rows,
-                                 toShortText(look.first, kTimeDigits), toShortText(look.last, kTimeDigits));
+  std::string text = fmt::format("{}: {} rows, {} to {}\n", look.source, look.rows, describeTime(look.first),
+                                 describeTime(look.last));
   text += look.time.empty()
               ? "times: by the rate\n"
               : fmt::format("times: column {}{}\n", look.time,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/model_numbers.hpp"
@@ -22,11 +21,6 @@ std::vector<std::string> listColumns(const MeasuredSignalSpec& spec) {
   std::vector<std::string> names = listTimeColumns(makeTimeBase(spec, 0.0));
   names.push_back(parseColumn(spec.column.text).name);
   return names;
-}
-
-std::string describeTime(double t, double start) {
-  constexpr int kDigits = 6;
-  return toShortText(t + start, kDigits) + " s";
 }
 
 /// The delays of a table within the bounds of the parameters: by changing one of them after the other, which
@@ -66,14 +60,17 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
   }
   const double step = calcMedianStep(times);
   if (times[0] > begin + kSlack * step || times[times.size() - 1] < end - kSlack * step) {
-    throw MeasurementError(source + ": covers " + describeTime(times[0], start) + " to " +
-                           describeTime(times[times.size() - 1], start) + ", but " +
-                           describeTime(begin, start) + " to " + describeTime(end, start) + " is needed");
+    const double last = times[times.size() - 1];
+    const bool elsewhere = times[0] > end || last < begin;
+    throw MeasurementError(source + ": covers " + describeTime(start + times[0]) + " to " +
+                           describeTime(start + last) + ", but " + describeTime(start + begin) + " to " +
+                           describeTime(start + end) + " is needed" +
+                           (elsewhere ? "; give the time in the file that is the model's 0 (start)" : ""));
   }
   for (Index i = 0; i + 1 < times.size(); ++i) {
     if (times[i + 1] - times[i] > kLongest * step) {
-      throw MeasurementError(source + ": has a gap of " + describeTime(times[i + 1] - times[i], 0.0) +
-                             " after t = " + describeTime(times[i], start) + " in a signal that is needed");
+      throw MeasurementError(source + ": has a gap of " + describeTime(times[i + 1] - times[i]) +
+                             " after t = " + describeTime(start + times[i]) + " in a signal that is needed");
     }
   }
 }

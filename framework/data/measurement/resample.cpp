@@ -18,11 +18,6 @@ constexpr int kPoints = InterpolationWeights::kPoints;
 constexpr const char* kElsewhere =
     "; give the time in the file that is the model's 0 (--start), or the unit of its times, as 't [ms]'";
 
-std::string toSeconds(double t) {
-  constexpr int kDigits = 6, kDigitsOfStamps = 13;  // of a time since 1970, down to milliseconds
-  return toShortText(t, std::abs(t) < 1e5 ? kDigits : kDigitsOfStamps) + " s";
-}
-
 double calcSmallestDifference(const VectorXd& times) {
   return times.size() < 2 ? HUGE_VAL
                           : (times.tail(times.size() - 1) - times.head(times.size() - 1)).minCoeff();
@@ -49,12 +44,12 @@ class Interpolation {
 
   void requireCovered(double from, double to) const {
     if (times_[0] > from + getTolerance()) {
-      fail("begins at " + toSeconds(times_[0]) + ", but is needed from " + toSeconds(from) + " on" +
+      fail("begins at " + describeTime(times_[0]) + ", but is needed from " + describeTime(from) + " on" +
            (times_[0] > to ? kElsewhere : ""));
     }
     const double end = times_[times_.size() - 1];
     if (end < to - getTolerance()) {
-      fail("ends at " + toSeconds(end) + ", but is needed until " + toSeconds(to) +
+      fail("ends at " + describeTime(end) + ", but is needed until " + describeTime(to) +
            (end < from ? kElsewhere : ""));
     }
   }
@@ -76,8 +71,8 @@ class Interpolation {
   void requireRate() const {
     constexpr double kSlack = 1.01;
     if (times_.size() < kPoints || step_ > kSlack * interval_) {
-      fail("has a sample each " + toSeconds(step_) + " (median); at least one each " + toSeconds(interval_) +
-           " is needed");
+      fail("has a sample each " + describeTime(step_) + " (median); at least one each " +
+           describeTime(interval_) + " is needed");
     }
   }
 
@@ -85,8 +80,9 @@ class Interpolation {
     constexpr double kLongest = 1.5;
     for (Index i = first; i + 1 < first + kPoints; ++i) {
       if (times_[i + 1] - times_[i] > kLongest * step_) {
-        fail("has a gap of " + toSeconds(times_[i + 1] - times_[i]) + " after t = " + toSeconds(times_[i]) +
-             ", where samples are needed; the median step is " + toSeconds(step_));
+        fail("has a gap of " + describeTime(times_[i + 1] - times_[i]) +
+             " after t = " + describeTime(times_[i]) + ", where samples are needed; the median step is " +
+             describeTime(step_));
       }
     }
   }
@@ -107,8 +103,8 @@ void requireAlive(const Measurement& measurement, Index output, const RowRange& 
   if (range.count >= kMin && (values.array() == values[0]).all()) {
     throw MeasurementError(
         measurement.source + ": column '" + measurement.column_names[output] + "' is " + toText(values[0]) +
-        " (constant signal) from " + toSeconds(measurement.times[range.first]) + " to " +
-        toSeconds(measurement.times[range.first + range.count - 1]) + "; check the sensor and its cable");
+        " (constant signal) from " + describeTime(measurement.times[range.first]) + " to " +
+        describeTime(measurement.times[range.first + range.count - 1]) + "; check the sensor and its cable");
   }
 }
 

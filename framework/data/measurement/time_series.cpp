@@ -154,6 +154,12 @@ std::vector<Index> findTurnJumps(const VectorXd& values, double turn) {
   return jumps;
 }
 
+std::string describeTime(double seconds) {
+  constexpr int kDigits = 6, kDigitsOfStamps = 13;
+  constexpr double kStamp = 1e5;
+  return toShortText(seconds, std::abs(seconds) < kStamp ? kDigits : kDigitsOfStamps) + " s";
+}
+
 double calcMedianStep(const VectorXd& times) {
   VectorXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
   double* middle = steps.data() + steps.size() / 2;

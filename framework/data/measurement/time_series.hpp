@@ -13,6 +13,9 @@ struct TimeBase {
   double start = 0.0;                 ///< s, taken off all times
 };
 
+/// "1.545 s", a time since 1970 down to milliseconds: "1700000000.379 s".
+std::string describeTime(double seconds);
+
 /// The names of the columns that may hold the times, for readTable().
 std::vector<std::string> listTimeColumns(const TimeBase& base);
 

@@ -175,7 +175,7 @@ VectorXd calcDistillationScale(const SurrogatePool& pool, const NetworkTask& tas
 /// Makes standard deviations up for what the teacher's lack. Both factors make up for the same posteriors
 /// that are not normal, so that their product would do so twice: it was up to 4 % too wide, and 50 %
 /// intervals held 58 %.
-void makeUpFor(const VectorXd& student_scale, const HeldOutTargets& targets, NetworkMapTraining& training) {
+void inflateForTeacher(const VectorXd& student_scale, const HeldOutTargets& targets, NetworkMapTraining& training) {
   const NetworkMap& map = training.map;
   VectorXd& scale = training.map.validation.stddev_scale;
   scale = scale.cwiseMax(student_scale);
@@ -291,7 +291,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool&
   const HeldOutTargets held_out =
       predictHeldOut(set, map.members, parts.held_out, draws, task.seed, control.threads);
   validateMap(held_out, task, training);
-  makeUpFor(calcDistillationScale(pool, task, map, control.threads), held_out, training);
+  inflateForTeacher(calcDistillationScale(pool, task, map, control.threads), held_out, training);
   return training;
 }
 

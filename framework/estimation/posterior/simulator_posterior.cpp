@@ -9,9 +9,11 @@
 #include "framework/estimation/informativeness.hpp"
 #include "framework/estimation/posterior/linear_posterior.hpp"
 #include "framework/estimation/posterior/marginal_surface.hpp"
+#include "framework/estimation/posterior/search_team.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/points/point_set.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
@@ -304,7 +306,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();
   if (found.basins.empty()) {
-    posterior.message = "no simulation within the bounds succeeded";
+    posterior.message = "every search failed at its first simulation";
     return posterior;
   }
   setBest(found, coordinates, posterior);
@@ -347,15 +349,31 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
   return samplePosterior(problem, given, options);
 }
 
-double findLeastChiSquare(const PosteriorProblem& problem, int searches) {
+double findLeastChiSquare(const PosteriorProblem& problem) {
+  constexpr Index kPoints = 32, kSearches = 3;
   ProblemSurface whole(problem);
-  BasinSearchOptions options;
-  options.scouts = options.starts = options.probes = searches;
-  options.confirmations = searches + 1;  // neither probes nor batches follow
-  options.max_batches = 0;
-  const BasinSearch found = findBasins(whole.upd(), MatrixXd(whole.upd().getDimensions(), 0), 1, options);
-  return found.basins.empty() ? std::numeric_limits<double>::infinity()
-                              : found.basins.front().local.chi_square;
+  MisfitSurface& surface = whole.upd();
+  PointSetSpec sobol;
+  sobol.method = DesignMethod::kSobol;
+  sobol.samples = kPoints;
+  const MatrixXd points =
+      2.0 * sampleUnitCube(sobol, static_cast<int>(surface.getDimensions()), 1, RandomPurpose::kBasinStarts)
+                .array() -
+      1.0;
+  const VectorXd misfits = surface.calcMisfits(points);
+  std::vector<Index> order(kPoints);
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::isfinite(misfits[a]) && !(misfits[a] >= misfits[b]);
+  });
+  order.resize(kSearches);
+  SearchTeam team(surface, points(Eigen::all, order));
+  team.run(BasinSearchOptions{}.max_iterations);
+  double least = std::numeric_limits<double>::infinity();
+  for (const LocalSurface& end : team.listEnds()) {
+    least = std::min(least, end.chi_square);
+  }
+  return least;
 }
 
 }  // namespace twinmap

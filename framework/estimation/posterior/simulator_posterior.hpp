@@ -91,8 +91,9 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
                                    const Eigen::VectorXd& held, const Eigen::MatrixXd& given,
                                    const SimulatorPosteriorOptions& options);
 
-/// The least chi-square that so many searches from all over the bounds find; infinite where none of them
-/// could be simulated. Cost: some 10 simulations a search, 5 of them with derivatives.
-double findLeastChiSquare(const PosteriorProblem& problem, int searches);
+/// The least chi-square that three searches find, from the best of 32 points all over the bounds; infinite
+/// where none of them could be simulated. To compare gross misfits: no test of other basins. Cost: 32
+/// simulations and some 10 a search, 5 of them with derivatives.
+double findLeastChiSquare(const PosteriorProblem& problem);
 
 }  // namespace twinmap

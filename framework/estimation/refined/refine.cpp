@@ -39,7 +39,8 @@ class Refinement {
       return finish();
     }
     for (const RefinementStart& start : task_.starts) {
-      if (tryWhole(box_.normalize(start.point), start.name) || (task_.insist && tryGrowing(start))) {
+      if (tryWhole(box_.normalize(start.point), start.name) ||
+          (task_.uses_growing_windows && tryGrowing(start))) {
         break;
       }
     }

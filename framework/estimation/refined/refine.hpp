@@ -24,7 +24,8 @@ struct RefinementTask {
   Eigen::VectorXd features;             ///< d, finite
   std::vector<RefinementStart> starts;  ///< at least one, in the order they are tried
   SearchedParameters searched;
-  bool insist = true;  ///< where no start is accepted, fit growing windows of time; else the starts alone
+  bool uses_growing_windows =
+      true;  ///< where no start is accepted, fit growing windows of time; else the starts alone
   /// Of the searched parameters (s x s, half-widths) around the first start, as the map sees it: an answer is
   /// first sought at that distance (confirm()); empty: unknown.
   Eigen::MatrixXd covariance{};

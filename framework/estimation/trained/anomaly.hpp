@@ -10,7 +10,7 @@ struct ResidualRun {
   Eigen::Index first = 0, count = 0;
 };
 
-/// The most conspicuous stretch of a residual.
+/// The worst stretch of a residual.
 struct Anomaly {
   double score = 0.0;  ///< a standard normal deviate, to about a tenth
   Eigen::Index first = 0, count = 0;

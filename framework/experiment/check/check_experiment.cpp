@@ -29,8 +29,8 @@ void checkName(const Name& name) {
 /// What is simulated must have a duration.
 void checkDuration(const ExperimentSpec& experiment) {
   if (!collectOutputs(experiment.features).empty() && !(experiment.model.simulation.duration > 0.0)) {
-    throw ExperimentError({experiment.name.where.file, 0, 0, "simulation.duration"}, "0",
-                          "must be given, a number above 0, for features of outputs");
+    throw ExperimentError({experiment.name.where.file, 0, 0, "simulation.duration"}, "",
+                          "must be given, above 0: the simulated time (s), which features of outputs need");
   }
 }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/check/check_pairs.hpp"
 #include "framework/experiment/check/check_sampled.hpp"
 #include "framework/experiment/check/check_variables.hpp"
 #include "framework/experiment/check/field_check.hpp"
+#include "framework/experiment/expression/expression_tree.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/named_forces.hpp"
@@ -84,8 +86,23 @@ class ModelCheck {
     checkPriors(model_);
   }
 
+  /// later: the constant itself and those below it.
+  static void requireEarlier(const Expression& value, const std::vector<ConstantSpec>& later) {
+    const std::vector<std::string> names = collectNames(later);
+    for (const std::string& used : parseExpression(value).names) {
+      if (std::find(names.begin(), names.end(), used) != names.end()) {
+        throw ExperimentError(value.where, value.text,
+                              "uses '" + used +
+                                  "', which is declared only after it; a constant may use those " +
+                                  "above it, and no circle of them has a value");
+      }
+    }
+  }
+
   void declareConstants() {
-    for (const ConstantSpec& constant : model_.constants) {
+    for (auto constant_at = model_.constants.begin(); constant_at != model_.constants.end(); ++constant_at) {
+      const ConstantSpec& constant = *constant_at;
+      requireEarlier(constant.value, {constant_at, model_.constants.end()});
       const double value = fields_.constants.check(constant.value, constant.unit);
       fields_.constants.define(constant.name, CheckScope::readUnit(constant.unit, constant.name.where),
                                value);

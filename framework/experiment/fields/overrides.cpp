@@ -161,6 +161,14 @@ void endSweepOf(const std::string& key, YamlNode& root) {
   }
 }
 
+/// That a parameter's value is not asked for by the parameter's name alone.
+void requireNoParameter(const YamlNode& root, const std::string& key, const Change& change) {
+  const YamlNode* parameters = root.find("parameters");
+  if (parameters != nullptr && parameters->find(key) != nullptr && root.find(key) == nullptr) {
+    reject(change, fmt::format("names a parameter: write parameters.{}", change.text));
+  }
+}
+
 }  // namespace
 
 void applyOverride(YamlNode& root, const std::string& override_text) {
@@ -172,6 +180,7 @@ void applyOverride(YamlNode& root, const std::string& override_text) {
   const std::string key = override_text.substr(0, equals);
   const std::string value = override_text.substr(equals + 1);
   const std::vector<std::string> values = splitValues(value);
+  requireNoParameter(root, key, change);
   if (isSweepable(key) && (values.size() > 1 || isRange(value))) {
     setSweptValues(root, key, parseValues(values, change), change);
   } else {

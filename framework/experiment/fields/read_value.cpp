@@ -222,7 +222,7 @@ void FieldReader::scalarIsValueOf(const char* key) {
 }
 
 const YamlNode* FieldReader::take(const char* key) {
-  requireKind(*node_, YamlNode::Kind::kMap, "a map");
+  requireKind(*node_, YamlNode::Kind::kMap, "a map, such as {" + std::string(key) + ": ...}");
   known_.emplace_back(key);
   return node_->find(key);
 }
@@ -236,7 +236,9 @@ const YamlNode& FieldReader::takeRequired(const char* key, const char* what) {
         throw ExperimentError(entry.key_where, entry.key, "is not a key here" + suggestion);
       }
     }
-    throw ExperimentError(node_->where, "", "needs the key '" + std::string(key) + "' (" + what + ")");
+    throw ExperimentError(
+        node_->where, "",
+        "needs the key '" + std::string(key) + "'" + (*what == '\0' ? "" : " (" + std::string(what) + ")"));
   }
   return *node;
 }

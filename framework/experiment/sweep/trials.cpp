@@ -91,7 +91,8 @@ YamlNode selectTrial(const YamlNode& root) {
   const YamlNode* chosen = findChoice(root);
   if (chosen == nullptr) {
     throw ExperimentError(root.find(kTrials)->where, "",
-                          fmt::format("describes {} trials; choose one (trial={}) or run each (trial={})",
+                          fmt::format("describes {0} trials; choose one (trial={1}) or run each (trial={2}); "
+                                      "infer takes --trial {1}=RECORDING",
                                       names.size(), names.front(), fmt::join(names, ",")));
   }
   const auto found = std::find(names.begin(), names.end(), chosen->scalar);

@@ -24,6 +24,27 @@ SourceLocation locate(const std::string& file, const YAML::Mark& mark) {
   return {file, mark.line + 1, mark.column + 1, ""};
 }
 
+/// Whether a line (from 0) is indented by tabs, of which yaml-cpp says something else.
+bool isIndentedByTab(const std::string& text, int line) {
+  std::istringstream lines(text);
+  std::string found;
+  for (int i = 0; i <= line; ++i) {
+    std::getline(lines, found);
+  }
+  return found.substr(0, found.find_first_not_of(" \t")).find('\t') != std::string::npos;
+}
+
+/// What yaml-cpp says, in the file's own signs where it names brackets.
+std::string describe(const YAML::Exception& error, const std::string& text) {
+  const std::string& problem = error.msg;
+  if (isIndentedByTab(text, error.mark.line)) {
+    return "the line is indented by a tab, where YAML takes spaces";
+  }
+  return problem == "end of sequence flow not found" ? "a list that begins with '[' is not closed by ']'"
+         : problem == "end of map flow not found"    ? "a map that begins with '{' is not closed by '}'"
+                                                     : problem;
+}
+
 /// Builds the tree from yaml-cpp's events. Containers under construction are on a stack; a map also holds
 /// the key whose value comes next.
 class TreeBuilder : public YAML::EventHandler {
@@ -209,7 +230,7 @@ YamlNode parseYaml(const std::string& text, const std::string& file) {
                             "starts a second document; one file is one experiment");
     }
   } catch (const YAML::Exception& error) {
-    throw ExperimentError(locate(file, error.mark), "", "is not valid YAML: " + error.msg);
+    throw ExperimentError(locate(file, error.mark), "", "is not valid YAML: " + describe(error, text));
   }
   YamlNode root = builder.takeRoot();
   if (root.kind == YamlNode::Kind::kNull) {
@@ -227,13 +248,19 @@ YamlNode loadYaml(const std::string& path) {
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
-    throw ExperimentError(where, "", "cannot be read; does the file exist?");
+    throw ExperimentError(
+        where, "",
+        std::filesystem::exists(path, error) ? "cannot be read" : "does not exist; give the experiment file");
   }
   const std::string text = readStart(file, kLargestFile + 1);
   if (text.size() > kLargestFile) {
     throw ExperimentError(where, "", "is larger than 16 MiB, too large for an experiment file");
   }
-  return parseYaml(text, path);
+  YamlNode root = parseYaml(text, path);
+  if (root.kind == YamlNode::Kind::kNull) {
+    throw ExperimentError(root.where, "", "is empty: an experiment begins with its name, as 'name: cart'");
+  }
+  return root;
 }
 
 }  // namespace twinmap

@@ -58,7 +58,7 @@ std::string describeSignals(const ExportedModel& model, const std::string& prefi
              "\nThey are resampled at {} times from {} s to {} s (`grid_times`), 0 being the model's: the "
              "measured value where a time agrees within 1e-6 of the median step, else the cubic through "
              "the four nearest samples. A median step of at most {} s is needed for that. The signals "
-             "must answer the excitation that the map was trained on; nobody checks that here.\n",
+             "must be responses to the excitation that the map was trained on; this is not checked here.\n",
              times.size(), toText(times[0]), toText(times[times.size() - 1]),
              toText(1.01 * model.sample_interval.value_or(0.0)));
 }
@@ -122,7 +122,7 @@ std::string describeOperations(const ExportedModel& model) {
 
 constexpr const char* kStatuses =
     "| status | bit | meaning |\n|---|---|---|\n"
-    "| ok | 0 | nothing is said against the answer |\n"
+    "| ok | 0 | no test found a fault |\n"
     "| model_mismatch | 1 | no parameter values within the bounds fit the measurement within its noise |\n"
     "| outside_training | 2 | the features are far from all the map was trained on |\n"
     "| at_bounds | 4 | a parameter lies beyond its bounds |\n"
@@ -136,7 +136,7 @@ std::string describeUse(const ExportedModel& model, const std::string& prefix, c
       "# {0}: measured signals to parameters, in C99\n\nWritten by `twinmap export`. `{1}_map.c` and "
       "`{1}_map.h` "
       "need libm alone: no heap, no recursion, no variables of their own. `make test` runs `selftest.c`: {2} "
-      "measurements with twinmap's answers (`CC`, `CFLAGS`, `LDFLAGS` and `RUN` as for other compilers and "
+      "measurements with twinmap's estimates (`CC`, `CFLAGS`, `LDFLAGS` and `RUN` as for other compilers and "
       "emulators). Compile with `-std=c99`, or `-ffp-contract=off`: which products are fused with sums is "
       "chosen in the source. With fused multiply-adds (`-march=native`, AArch64) it is fastest.\n\n"
       "## Call\n\n```c\n#include \"{1}_map.h\"\n\nstatic {1}_state state; /* one a thread; needs no "
@@ -153,7 +153,8 @@ std::string describeUse(const ExportedModel& model, const std::string& prefix, c
       "  /* result.mean[i] +- result.sd[i]; result.status, {0}_status_text(result.status) */\n}}\n```\n\n"
       "`known`: NULL where the set-up has no known inputs. `{0}_infer_features` takes the features "
       "themselves. "
-      "The answers are those of `twinmap infer --no-refine`, bit for bit on processors that multiply and add "
+      "The estimates are those of `twinmap infer --no-refine`, bit for bit on processors that multiply and "
+      "add "
       "at "
       "once: for x86-64 the file asks GCC and clang for AVX2 and FMA itself. For those before 2013 compile "
       "with "
@@ -173,7 +174,7 @@ std::string describeMemory(const ExportedModel& model, const COptions& options, 
       single ? "Signals, features and the tables that tolerate it are float. The weights of smooth processes "
                "cancel to "
                "a millionth of their size, and variances are small differences: what enters these, and the "
-               "answers "
+               "estimates "
                "themselves, whose sd may be below what a float of the mean resolves, are double."
              : "All numbers are double.");
 }

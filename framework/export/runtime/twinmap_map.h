@@ -48,12 +48,12 @@ typedef struct {
   double p_value;            /* of the residual, as if the model were right */
   double chi_square;         /* sum of the squared residuals, in variances */
   double chi_square_p_value;
-  double anomaly_score;        /* of the most conspicuous stretch of residuals, a standard normal deviate */
+  double anomaly_score;        /* of the worst stretch of residuals, a standard normal deviate */
   double anomaly_p_value;
   double distance;           /* to the nearest training sample, 1: the farthest of simulated measurements */
   int residuals;             /* how many */
   int anomaly_first, anomaly_count;
-  unsigned statuses;         /* all that apply: bits of twinmap_status; 0: nothing is said against it */
+  unsigned statuses;         /* all that apply: bits of twinmap_status; 0: no test found a fault */
   twinmap_status status;     /* the most severe of them */
 } twinmap_result;
 

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace twinmap {
 namespace {
@@ -84,16 +86,27 @@ struct Spike {
   double height = 0.0;  ///< above the cubic through the four neighbours
 };
 
-/// The sample of evenly spaced ones that is farthest off the cubic through its neighbours.
+/// The sample of evenly spaced ones that is farthest off the cubic through its neighbours; of height 0 where
+/// none stands out: noise and curvature put half of the samples off, and a spike that makes a gross misfit
+/// is far above both.
 Spike findSpike(const Eigen::Ref<const VectorXd>& samples) {
+  constexpr double kStandsOut = 6.0;  // of 1000 normal numbers the largest is 5 times the median
   Spike spike;
+  std::vector<double> heights;
   for (Index i = 2; i + 2 < samples.size(); ++i) {
     const double cubic = (4.0 * (samples[i - 1] + samples[i + 1]) - samples[i - 2] - samples[i + 2]) / 6.0;
-    if (std::abs(samples[i] - cubic) > std::abs(spike.height)) {
-      spike = {i, samples[i] - cubic};
+    const double height = samples[i] - cubic;
+    if (std::isfinite(height)) {
+      heights.push_back(std::abs(height));
+      spike = std::abs(height) > std::abs(spike.height) ? Spike{i, height} : spike;
     }
   }
-  return spike;
+  if (heights.empty()) {
+    return spike;
+  }
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return std::abs(spike.height) > kStandsOut * *middle ? spike : Spike{};
 }
 
 /// One to three samples of an output that alone are wrong.
@@ -106,17 +119,38 @@ void trySpikes(const VectorXd& measured, const ResponseLayout& layout, Index out
   std::string places;
   for (int i = 0; i < kMost; ++i) {
     const auto [sample, height] = findSpike(corrected.segment(first, times));
+    if (height == 0.0) {
+      return;
+    }
     const double offset =
         findOffset(corrected, first + sample, 1, height, kStep * std::abs(height), calcMisfit);
     corrected = subtract(corrected, first + sample, 1, offset);
     places += fmt::format("{}{:.4g} s", places.empty() ? "" : ", ", layout.times[sample]);
-    if (search.tryOut(corrected,
-                      fmt::format("{} has a spike at {}: repair it, or infer with the experiment file, which "
-                                  "leaves spikes out",
-                                  layout.output_names[static_cast<std::size_t>(output)], places))) {
+    if (search.tryOut(corrected, fmt::format("{} has {} at {}: repair the recording, or empty the cell{}",
+                                             layout.output_names[static_cast<std::size_t>(output)],
+                                             i == 0 ? "a spike" : "spikes", places, i == 0 ? "" : "s"))) {
       return;
     }
   }
+}
+
+/// The response without the samples of an output that stand at its largest or its least value, as a sensor
+/// that clips shows it; false where neither has four of them.
+bool dropClipped(VectorXd& response, Index first, Index count, Index& dropped) {
+  constexpr Index kFewest = 4;  // of numbers with noise no two are the same
+  const VectorXd values = response.segment(first, count);
+  const VectorXd finite =
+      values.array().isFinite().select(values, values.array().isFinite().select(values, 0.0).mean());
+  dropped = 0;
+  for (const double limit : {finite.maxCoeff(), finite.minCoeff()}) {
+    const auto at_limit = values.array() == limit;
+    if (at_limit.count() >= kFewest) {
+      dropped += at_limit.count();
+      response.segment(first, count) =
+          at_limit.select(std::numeric_limits<double>::quiet_NaN(), response.segment(first, count));
+    }
+  }
+  return dropped > 0;
 }
 
 }  // namespace
@@ -140,6 +174,12 @@ std::string explainByFault(const VectorXd& measured, const ResponseLayout& layou
       search.tryOut(corrected, describe(unit, name, layout.output_units[static_cast<std::size_t>(output)]));
     }
     trySpikes(measured, layout, output, calcMisfit, search);
+    VectorXd unclipped = measured;
+    if (Index dropped = 0; dropClipped(unclipped, first, times, dropped)) {
+      search.tryOut(unclipped, fmt::format("{} is clipped in {} samples: state what it can show, "
+                                           "measurement.range",
+                                           name, dropped));
+    }
     const auto values = measured.segment(first, times).array();
     const double offset =
         findOffset(measured, first, times, 0.0, (values - values.mean()).abs().maxCoeff(), calcMisfit);

@@ -61,15 +61,33 @@ std::string describeContradictions(const JointInference& inferred,
   return text;
 }
 
-std::string describeAgreement(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+/// misfits: the remedy has been given for these.
+std::string describeAgreement(const JointInference& inferred, const std::vector<ParameterSpec>& parameters,
+                              bool misfits) {
   const std::size_t count = inferred.alone.size();
   const Agreement& agreement = *inferred.agreement;
   if (!inferred.disagrees()) {
     return fmt::format("  The {} recordings agree ({}).\n", count, describeLevel(agreement));
   }
-  return explainNotice(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess) +
-         describeContradictions(inferred, parameters) +
+  const std::string text =
+      misfits ? explainBriefly(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess)
+              : explainNotice(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess);
+  return text + describeContradictions(inferred, parameters) +
          "  The intervals below cover the scatter between recordings.\n";
+}
+
+/// Of recordings that the model does not fit each by itself.
+std::string describeMisfits(const JointInference& inferred) {
+  std::vector<std::string> labels;
+  for (const RecordingInference& one : inferred.alone) {
+    if (isMismatch(selectEstimate(one.inferred).statuses)) {
+      labels.push_back(one.label);
+    }
+  }
+  return labels.empty() ? ""
+                        : explainNotice(Notice::kModelMismatch,
+                                        fmt::format("{} misfit{} already alone", fmt::join(labels, ", "),
+                                                    labels.size() == 1 ? "s" : ""));
 }
 
 std::string makeEstimateTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
@@ -154,9 +172,10 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
       fmt::format("{}", fmt::join(listStatuses(inferred, static_cast<Index>(parameters.size())), ", "));
   std::string text = fmt::format("{} recordings together: {}\n", inferred.alone.size(), statuses);
   if (!inferred.agreement) {
-    return text + explainNotice(Notice::kNotSimulated);
+    return text + explainNotice(Notice::kNotSimulated, inferred.joint.message);
   }
-  text += describeAgreement(inferred, parameters);
+  const std::string misfits = describeMisfits(inferred);
+  text += misfits + describeAgreement(inferred, parameters, !misfits.empty());
   if (isStated(inferred)) {
     text += makeEstimateTable(inferred, parameters);
   } else {

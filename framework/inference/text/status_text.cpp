@@ -204,7 +204,7 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   if (is(Notice::kUncalibrated)) {
     return explainNotice(Notice::kUncalibrated);
   }
-  return is(Notice::kNotSimulated) ? explainNotice(Notice::kNotSimulated) : "";
+  return is(Notice::kNotSimulated) ? explainNotice(Notice::kNotSimulated, inferred.posterior->message) : "";
 }
 
 /// The lines that say what happened alone: what follows from a misfit is not mended by itself.

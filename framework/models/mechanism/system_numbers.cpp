@@ -35,7 +35,9 @@ void checkInertia(const std::string& owner, const Vector3d& principal, const Sou
   }
   if (principal[2] > principal[0] + principal[1] + slack) {
     throwUnusable({owner, "inertia: largest principal moment", "kg m2"}, principal[2],
-                  "must not exceed the sum of the other two", where);
+                  "must not exceed the sum of the other two (of a body that turns about one axis alone, only "
+                  "the moment J about that axis acts: write [J, J, J])",
+                  where);
   }
 }
 

@@ -123,8 +123,7 @@ std::string describeCourse(const History& history, std::size_t parameter, const 
                      is_step ? "" : " on", scatter);
 }
 
-std::string describeCourses(const History& history) {
-  const std::optional<std::vector<Course>> courses = fitCourses(history);
+std::string describeCourses(const History& history, const std::optional<std::vector<Course>>& courses) {
   if (!courses) {
     return "";
   }

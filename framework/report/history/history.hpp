@@ -43,6 +43,6 @@ std::optional<std::vector<Course>> fitCourses(const History& history);
 std::string describeCourse(const History& history, std::size_t parameter, const Course& course);
 
 /// A line for each parameter, below one that says how many measurements it rests on; "" without courses.
-std::string describeCourses(const History& history);
+std::string describeCourses(const History& history, const std::optional<std::vector<Course>>& courses);
 
 }  // namespace twinmap

@@ -108,8 +108,8 @@ Section makeHistoryVerdict(const History& history, const std::optional<std::vect
 
 }  // namespace
 
-std::string makeHistoryPage(const std::string& title, const History& history) {
-  const std::optional<std::vector<Course>> courses = fitCourses(history);
+std::string makeHistoryPage(const std::string& title, const History& history,
+                            const std::optional<std::vector<Course>>& courses) {
   Page page;
   page.title = title;
   page.sections.push_back(makeHistoryVerdict(history, courses));

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -32,7 +34,7 @@ std::string describeSpeed(const RunFolder& run) {
   const double samples = run.experiment.design.train.samples + run.experiment.design.test.samples -
                          (std::isfinite(reused) ? reused : 0.0);
   const double simulating = calcSimulationSeconds(run.provenance);
-  return simulating > 0.0 && samples > 0.0 ? toShortText(samples / simulating, kCostDigits) : "";
+  return simulating > 0.0 && samples > 0.0 ? fmt::format("{:.0f}", samples / simulating) : "";
 }
 
 std::string makeCostFacts(const RunFolder& run) {

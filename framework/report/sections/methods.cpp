@@ -64,7 +64,7 @@ void addMethods(const RunFolder& run, Page& page) {
               "Before and after refinement",
               {{"accepted", "share accepted"}, {"median_simulations", "simulations, median"}}},
              "The figures of a method are those of the measurements that it accepted; the table above has "
-             "what is answered by default.",
+             "what is reported by default.",
              page);
 }
 

@@ -58,7 +58,7 @@ void addStddevOverBox(const RunFolder& run, Page& page) {
                    makeBoxPanel(getErrorColumn("{p}"), "Absolute error of {p.label}", "absolute error")};
   if (has_limits) {
     figure.panels.push_back(
-        makeBoxPanel(getLimitColumn("{p}"), "Information limit (sd) of {p.label}", "limit"));
+        makeBoxPanel(getLimitColumn("{p}"), "Smallest possible sd of {p}", "limit"));
   }
   figure.columns = static_cast<int>(figure.panels.size());
   Section section{"stddev-over-box", "Standard deviation over the bounds", "", {}};

@@ -51,16 +51,20 @@ std::set<std::string> findMissingSlots(const SweepAxes& axes, const CurveAxes& c
 /// The curves of one parameter: a line per variant, or per value of `other` if there is one variant only.
 Panel makeCurves(const SweepAxes& axes, const CurveAxes& curves, const std::string& parameter) {
   const bool by_variant = axes.variants.size() > 1;
-  const SlotValue no_title = nullptr;
-  return {"error-curves",
-          {{"parameter", parameter},
-           {"x", curves.x},
-           {"x_title", curves.x_title},
-           {"grouping", curves.other},
-           {"series", by_variant ? "variant" : curves.other}},
-          {{"series", by_variant ? axes.variants : toTexts(curves.others)},
-           {"series_title", by_variant ? no_title : curves.other_title}},
-          findMissingSlots(axes, curves)};
+  const SlotValue none = nullptr;
+  Panel panel{"error-curves",
+              {{"parameter", parameter},
+               {"x", curves.x},
+               {"x_title", curves.x_title},
+               {"grouping", curves.other},
+               {"series", by_variant ? "variant" : curves.other}},
+              {{"series", by_variant ? axes.variants : toTexts(curves.others)},
+               {"series_title", by_variant ? none : curves.other_title}},
+              findMissingSlots(axes, curves)};
+  if (!by_variant && curves.others.empty()) {  // a single line
+    panel.values["legends"] = none;
+  }
+  return panel;
 }
 
 Figure makeSweepFigure(const std::string& name, const std::string& title, const std::string& help) {

@@ -243,6 +243,7 @@
   }
 
   function describeSelection() {
+    if (!document.getElementById('selection')) return;
     const samples = selected ? Object.keys(selected) : [];
     const most = 8;
     document.getElementById('clear').disabled = !selected;
@@ -284,8 +285,9 @@
   }
 
   function setUpSelection() {
-    if (!page.samples) return;
-    document.getElementById('selection').hidden = false;
+    const bar = document.getElementById('selection');
+    if (!page.samples || !bar) return;
+    bar.hidden = false;
     const input = document.getElementById('sample');
     input.addEventListener('change', () => {
       select(page.samples.includes(Number(input.value)) && input.value !== '' ? {[input.value]: true} : null, 'sample');

@@ -278,7 +278,7 @@ void runFeatures(const ExperimentSpec& experiment, const RunOptions& options, co
   const RunLog log(options.folder);
   const std::unique_ptr<Simulator> simulator =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
-  logInfo(fmt::format("simulated by: {}", simulator->getEngine()));
+  logInfo(fmt::format("solver: {}", simulator->describeEngine()));
   warnOfIneffective(experiment.model, *simulator);
   const FeatureExtractor extractor = makeExtractor(experiment, simulator->getLayout());
   noteStore(options.folder, options.store);

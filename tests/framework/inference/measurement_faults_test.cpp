@@ -25,12 +25,15 @@ VectorXd makeResponse(double k, double d) {
   return response;
 }
 
-/// Chi-square beside the best k and d within [0.5, 2]; noise is left out, its chi-square is that of one each.
+/// Chi-square beside the best k and d within [0.5, 2], missing samples left out; noise is left out, its
+/// chi-square is that of one each.
 double calcMisfit(const VectorXd& response) {
   double chi_square = static_cast<double>(response.size());
-  const VectorXd shape = makeResponse(1.0, 1.0);
+  const VectorXd there = response.array().isFinite().select(VectorXd::Ones(response.size()), 0.0);
+  const VectorXd known = response.array().isFinite().select(response, 0.0);
+  const VectorXd shape = makeResponse(1.0, 1.0).cwiseProduct(there);
   for (const Index first : {Index{0}, kTimes}) {
-    const auto measured = response.segment(first, kTimes), mode = shape.segment(first, kTimes);
+    const auto measured = known.segment(first, kTimes), mode = shape.segment(first, kTimes);
     const double best = std::clamp(measured.dot(mode) / mode.squaredNorm(), 0.5, 2.0);
     chi_square += (measured - best * mode).squaredNorm() / (kNoise * kNoise);
   }
@@ -66,13 +69,21 @@ TEST(MeasurementFaults, SpikesAreNamedWithTheirTimes) {
   const VectorXd times = makeLayout().times;
   VectorXd response = makeResponse(1.0, 1.2);
   response[40] += 0.4;
-  EXPECT_EQ(explain(response),
-            "y has a spike at 2.424 s: repair it, or infer with the experiment file, which "
-            "leaves spikes out");
+  EXPECT_EQ(explain(response), "y has a spike at 2.424 s: repair the recording, or empty the cell");
   response[43] -= 0.3;
   response[80] += 0.7;
-  EXPECT_EQ(explain(response).rfind("y has a spike at 4.848 s, 2.424 s, 2.606 s: repair it", 0), 0u);
+  EXPECT_EQ(explain(response).rfind("y has spikes at 4.848 s, 2.424 s, 2.606 s: repair the recording", 0),
+            0u);
   EXPECT_NEAR(times[43], 2.606, 1e-3);
+}
+
+TEST(MeasurementFaults, ASensorThatClipsIsNamed) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response.head(kTimes) = response.head(kTimes).cwiseMin(0.6).cwiseMax(-0.9);
+  const auto clipped =
+      (response.head(kTimes).array() == 0.6 || response.head(kTimes).array() == -0.9).count();
+  EXPECT_EQ(explain(response), "y is clipped in " + std::to_string(clipped) +
+                                   " samples: state what it can show, measurement.range");
 }
 
 TEST(MeasurementFaults, DegreesAreNotNamedOfAMetre) {

@@ -32,14 +32,15 @@ History makeHistory(double step) {
 }
 
 TEST(History, NamesAChangeAndWhereItBegins) {
-  const std::string text = describeCourses(makeHistory(2.0));
+  const std::string text = describeCourses(makeHistory(2.0), fitCourses(makeHistory(2.0)));
   EXPECT_EQ(text.find("Over 11 of 12 measurements (a change is false in 1 of 100):\n  k fell by "), 0U)
       << text;
   EXPECT_NE(text.find(" at once, at measurement 7\n"), std::string::npos) << text;
 }
 
 TEST(History, WithoutAChangeIsConstant) {
-  EXPECT_NE(describeCourses(makeHistory(0.0)).find("\n  k is constant, "), std::string::npos);
+  EXPECT_NE(describeCourses(makeHistory(0.0), fitCourses(makeHistory(0.0))).find("\n  k is constant, "),
+            std::string::npos);
 }
 
 TEST(History, OfWindowsOfOneFileIsOverTime) {
@@ -48,20 +49,20 @@ TEST(History, OfWindowsOfOneFileIsOverTime) {
     history.points[i].source = "a.csv";
     history.points[i].start = 5.0 * static_cast<double>(i);
   }
-  EXPECT_NE(describeCourses(history).find(" at once, at 30 s\n"), std::string::npos);
+  EXPECT_NE(describeCourses(history, fitCourses(history)).find(" at once, at 30 s\n"), std::string::npos);
   history.points[4].start = 100.0;  // not in the order of time
-  EXPECT_EQ(describeCourses(history), "");
+  EXPECT_EQ(describeCourses(history, fitCourses(history)), "");
 }
 
 TEST(History, OfFewMeasurementsHasNoCourse) {
   History history = makeHistory(2.0);
   history.points.resize(6);  // of which five count
-  EXPECT_EQ(describeCourses(history), "");
-  EXPECT_NE(makeHistoryPage("cart", history).find("these are 5."), std::string::npos);
+  EXPECT_EQ(describeCourses(history, fitCourses(history)), "");
+  EXPECT_NE(makeHistoryPage("cart", history, fitCourses(history)).find("these are 5."), std::string::npos);
 }
 
 TEST(History, PageSaysTheCourseFirst) {
-  const std::string page = makeHistoryPage("cart", makeHistory(2.0));
+  const std::string page = makeHistoryPage("cart", makeHistory(2.0), fitCourses(makeHistory(2.0)));
   EXPECT_NE(page.find("<p class=\"lead\">k fell by "), std::string::npos);
   EXPECT_NE(page.find("model_mismatch"), std::string::npos);
 }

@@ -12,6 +12,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/infer_history.hpp"
+#include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -96,15 +97,7 @@ class InferCommand {
 
   /// Throws std::runtime_error if a measurement could not be used.
   void finish() {
-    if (format_ == Format::kTable) {
-      const std::string courses = describeCourses(history_.get());
-      std::cout << (courses.empty() ? "" : "\n") << courses;
-    }
-    std::cout.flush();
-    if (!page_.empty()) {
-      writeTextFile(page_, makeHistoryPage(source_.getExperiment().name.text, history_.get()));
-      std::cerr << "Page: " << page_ << "\n";
-    }
+    printCourses();
     if (draws_) {
       draws_->flush();
       requireDraws();
@@ -120,19 +113,37 @@ class InferCommand {
   void inferTable(const Table& table) {
     for (const std::optional<double>& start : starts_) {
       try {
+        WaitingLine waiting("inferring " + table.source);
         InferredMeasurement inferred = session_->infer(table, start, known_);
         inferred.run = run_;
+        std::optional<RecordedFeatures> recording;
         if (names_missing_ && inferred.fault.empty() && isMismatch(selectEstimate(inferred).statuses)) {
-          const RecordedFeatures recording = readRecording(source_.getReader(), table, start, known_);
-          inferred.missing = findMissingTerm(source_.getExperiment(), recording, inferred);
-          print(inferred, diagnoses_ ? &recording : nullptr);
-        } else {
-          print(inferred, nullptr);
+          waiting.describe("looking for what the model lacks, " + table.source);
+          recording = readRecording(source_.getReader(), table, start, known_);
+          inferred.missing = findMissingTerm(source_.getExperiment(), *recording, inferred);
         }
+        waiting.clear();
+        print(inferred, diagnoses_ && recording ? &*recording : nullptr);
         ++count_;
       } catch (const std::exception& error) {
         reportError(table.source, source_.getReader().getStatedStart(start), error.what());
       }
+    }
+  }
+
+  void printCourses() const {
+    if (format_ != Format::kTable && page_.empty()) {
+      return;
+    }
+    const History& history = history_.get();
+    const std::optional<std::vector<Course>> courses = fitCourses(history);
+    if (format_ == Format::kTable && courses) {
+      std::cout << "\n" << describeCourses(history, courses);
+    }
+    std::cout.flush();
+    if (!page_.empty()) {
+      writeTextFile(page_, makeHistoryPage(source_.getExperiment().name.text, history, courses));
+      std::cerr << "Page: " << page_ << "\n";
     }
   }
 

@@ -7,6 +7,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/waiting_line.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/direct_inference.hpp"
 #include "framework/inference/joint_inference.hpp"
@@ -147,7 +148,9 @@ void inferJointly(const InferArguments& arguments) {
     throw ExperimentError(
         "one recording alone is not inferred jointly; give several files, starts or windows");
   }
+  WaitingLine waiting(fmt::format("inferring from {} recordings", recordings.get().size()));
   const JointInference inferred = inferrer.infer(recordings.get());
+  waiting.clear();
   if (arguments.json) {
     std::cout << makeJointJson(inferred, inferrer.getParameters()) << "\n";
   } else if (arguments.csv) {

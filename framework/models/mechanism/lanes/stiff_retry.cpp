@@ -99,6 +99,13 @@ class RecordedProblem final : public HybridProblem {
   SingleProgram* jump_;  ///< null where nothing jumps
 };
 
+/// A step of Radau IIA costs some ten explicit ones. What needs so many of them is not stiff, but jumps: its
+/// step limit would take minutes to reach.
+int limitImplicitSteps(int explicit_steps) {
+  constexpr int kCost = 10, kEnough = 2000;
+  return std::min(explicit_steps, std::max(explicit_steps / kCost, kEnough));
+}
+
 SampleStatus makeSecondStatus(const SampleStatus& first, SampleStatus second) {
   second.stiff_retry = true;
   if (!second.ok) {
@@ -155,7 +162,7 @@ SampleStatus StiffRetry::run(const Eigen::Ref<const VectorXd>& parameters, Eigen
                              StepSequence& sequence) {
   const SimulationSpec& simulation = spec_.simulation;
   const IntegrationOptions options{simulation.relative_tolerance, simulation.absolute_tolerance,
-                                   simulation.max_steps, simulation.max_wall_time};
+                                   limitImplicitSteps(simulation.max_steps), simulation.max_wall_time};
   SampleStatus status;
   try {
     if (task_.layout.modes > 0) {

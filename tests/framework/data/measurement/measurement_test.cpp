@@ -4,6 +4,8 @@
 
 #include <sstream>
 
+#include "framework/data/measurement/time_series.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -51,6 +53,11 @@ Table without(Table table, Index row) {
     column.values.conservativeResize(column.values.size() - 1);
   }
   return table;
+}
+
+TEST(Measurement, TimesSince1970KeepTheirMilliseconds) {
+  EXPECT_EQ(describeTime(1.545), "1.545 s");
+  EXPECT_EQ(describeTime(1700000000.379473), "1700000000.379 s");
 }
 
 TEST(Measurement, IsExactWhereTimesAgree) {

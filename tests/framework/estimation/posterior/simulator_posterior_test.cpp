@@ -217,7 +217,7 @@ TEST(SimulatorPosterior, SaysWhereNothingCanBeSimulated) {
       3, [](const VectorXd&) { return VectorXd::Constant(3, std::nan("")); },
       testing::makeParameters(1, -1.0, 1.0), 0.1);
   const SimulatorPosterior posterior = sample(problem, VectorXd::Zero(3));
-  EXPECT_EQ(posterior.message, "no simulation within the bounds succeeded");
+  EXPECT_EQ(posterior.message, "every search failed at its first simulation");
   EXPECT_FALSE(posterior.isExplained());
 }
 

@@ -53,8 +53,9 @@ struct Problem {
   }
 
   Refined refineFrom(const VectorXd& features, const std::vector<RefinementStart>& starts,
-                     bool insist = false) {
-    return refine(simulator, model, {features, starts, {0, starts.front().point.size()}, insist});
+                     bool uses_growing_windows = false) {
+    return refine(simulator, model,
+                  {features, starts, {0, starts.front().point.size()}, uses_growing_windows});
   }
 
   FunctionSimulator simulator;
