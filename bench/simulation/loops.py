@@ -96,7 +96,7 @@ def time_run(twinmap, file, samples):
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         subprocess.run(
             [twinmap, "run", file, "--features-only", "--threads", "1", "--quiet", "--out", f"{folder}/run"]
-            + [f"design.train.samples={samples}", "design.test.samples=1", "inverse_map=gp"],
+            + [f"design.train.samples={samples}", "design.test.samples=2", "inverse_map=gp"],
             check=True,
             stdout=subprocess.DEVNULL,
         )

@@ -44,8 +44,9 @@ ModelSpec makeDriven(bool monotone) {
 TEST(Curves, HaveExactDerivativesWithRespectToTheirKnots) {
   for (const bool monotone : {false, true}) {
     ModelSpec model = makeDriven(monotone);
-    model.simulation.engine = Engine::kLanes;  // an error unless Simbody's is the same
-    model.simulation.relative_tolerance = 1e-11;
+    model.simulation.engine = Engine::kLanes;     // an error unless Simbody's is the same
+    model.simulation.relative_tolerance = 1e-13;  // knots are passed with less accuracy than steps are taken
+    model.simulation.absolute_tolerance = 1e-15;
     const VectorXd times = VectorXd::LinSpaced(9, 0.0, 2.0);
     MultibodySimulator simulator(model, times);
     const Eigen::Vector3d point(0.2, 0.4, 0.07);
@@ -55,12 +56,12 @@ TEST(Curves, HaveExactDerivativesWithRespectToTheirKnots) {
     ASSERT_TRUE(status.ok) << status.reason;
     for (Index k = 0; k < 3; ++k) {
       points.col(0) = points.col(1) = point;
-      points(k, 0) += 1e-5;
-      points(k, 1) -= 1e-5;
+      points(k, 0) += 1e-4;
+      points(k, 1) -= 1e-4;
       simulator.simulate(points, around, statuses);
-      const VectorXd difference = (around.col(0) - around.col(1)) / 2e-5;
+      const VectorXd difference = (around.col(0) - around.col(1)) / 2e-4;
       EXPECT_LT((derivatives.col(k) - difference).cwiseAbs().maxCoeff(),
-                1e-6 * difference.cwiseAbs().maxCoeff());
+                1e-5 * difference.cwiseAbs().maxCoeff());
     }
     model.simulation.engine = Engine::kSimbody;
     model.simulation.relative_tolerance = 1e-9;
