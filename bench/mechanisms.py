@@ -34,6 +34,11 @@ SHOWS = {
     "mechanisms/stiff_drive": "Two time scales, four decades apart: the stiff gear costs steps, not accuracy.",
     "mechanisms/four_storeys": "Eight parameters that all act on all outputs.",
     "mechanisms/spinning_top": "Fast rotation; the damping of the lean is hardly seen beside that of the spin.",
+    "mechanisms/servo_axis": "A controller hides mass and friction from the encoder; the motor's current and voltage tell them.",
+    "mechanisms/slider_crank": "A closed loop, assembled anew for each sample; the crank's angle tells what the piston weighs.",
+    "mechanisms/stick_slip": "Sticking and slipping by a bristle: 250 simulations do not teach when it slips, the simulator knows.",
+    "mechanisms/imu_arm": "No encoder: accelerometer and gyroscope in their own frame, at a place and with a zero that nobody knows.",
+    "mechanisms/motor_curve": "A static curve of six knots, beside inertia and friction: the known load gives the scale.",
 }
 
 

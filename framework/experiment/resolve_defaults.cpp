@@ -1,8 +1,11 @@
 #include "framework/experiment/resolve_defaults.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "framework/experiment/expression/curve.hpp"
 #include "framework/experiment/network_size.hpp"
 #include "framework/experiment/noise_correlation.hpp"
 #include "framework/experiment/points/prior.hpp"
@@ -16,6 +19,23 @@ void resolveBounds(std::vector<ParameterSpec>& parameters) {
       parameter.bounds = calcPriorRange(*parameter.prior);
       parameter.bounds.where = parameter.name.where;
     }
+  }
+}
+
+/// A parameter for each knot of a curve that gives their number.
+void resolveCurves(ModelSpec& model) {
+  for (CurveSpec& curve : model.system.curves) {
+    for (const Expression& value : listKnotParameters(curve)) {
+      ParameterSpec knot;
+      knot.name = {value.text, value.where};
+      knot.bounds = *curve.bounds;
+      knot.unit = curve.unit;
+      knot.description = fmt::format("value of {} at its knot", curve.name.text);
+      model.parameters.push_back(knot);
+      curve.values.push_back(value);
+    }
+    curve.knots.reset();
+    curve.bounds.reset();
   }
 }
 
@@ -113,6 +133,8 @@ void resolveDefaults(ExperimentSpec& experiment) {
        {&experiment.model.parameters, &experiment.model.nuisance, &experiment.model.inputs}) {
     resolveBounds(*parameters);
   }
+  resolveReport(experiment.model.parameters, experiment.report);  // the file's own, if there are two
+  resolveCurves(experiment.model);
   resolveReport(experiment.model.parameters, experiment.report);
   resolveTransform(experiment);
   resolveNoiseCorrelation(experiment);

@@ -22,6 +22,7 @@ void addSampleChapters(const RunFolder& run, Page& page) {
     page.tables["samples"] = makeSamplesTable(run);
   }
   addParameters(run, page);
+  addCurves(run, page);
   addInferred(run, page);
   addCalibration(run, page);
   addStddevOverBox(run, page);

@@ -165,6 +165,21 @@ std::string makeDerivedCsv(const RunSummary& run) {
   return makeCsv(rows);
 }
 
+std::string makeCurvesCsv(const RunSummary& run) {
+  const CurveEstimates& curves = run.evaluation.curves;
+  const DerivedEvaluation& values = curves.values;
+  std::vector<Row> rows{{"sample", "curve", "argument", "true", "inferred", "lower", "upper"}};
+  for (Eigen::Index i = 0; i < values.truth.cols(); ++i) {
+    for (Eigen::Index k = 0; k < values.truth.rows(); ++k) {
+      const auto point = static_cast<std::size_t>(k);
+      rows.push_back({std::to_string(run.test_indices[static_cast<std::size_t>(i)]), curves.curves[point],
+                      toText(curves.arguments[point]), toText(values.truth(k, i)), toText(values.mean(k, i)),
+                      toText(values.lower95(k, i)), toText(values.upper95(k, i))});
+    }
+  }
+  return makeCsv(rows);
+}
+
 std::string makeComponentsCsv(const RunSummary& run) {
   std::vector<Row> rows{{"sample", "component", "weight", "parameter", "mean", "stddev"}};
   for (std::size_t i = 0; i < run.evaluation.predictions.mixtures.size(); ++i) {

@@ -23,6 +23,9 @@ void writeEvaluation(const fs::path& folder, const RunSummary& run) {
   if (run.evaluation.derived) {
     writeTextFile(folder / "derived.csv", makeDerivedCsv(run));
   }
+  if (!run.evaluation.curves.curves.empty()) {
+    writeTextFile(folder / "curves.csv", makeCurvesCsv(run));
+  }
   if (!run.evaluation.posteriors.empty()) {
     writeTextFile(folder / "posterior.csv", makePosteriorCsv(run));
   }

@@ -45,6 +45,7 @@ void readTables(const fs::path& path, RunFolder& run) {
   run.correlations = readCsvFile(path / "correlations.csv");
   run.identifiability = readCsvFile(path / "identifiability.csv");
   run.identified = readCsvFile(path / "identified.csv");
+  run.curves = readCsvFile(path / "curves.csv");
   run.posterior = readCsvFile(path / "posterior.csv");
   run.sbc = readCsvFile(path / "sbc.csv");
   run.compared_maps = readCsvFile(path / "maps.csv");

@@ -33,6 +33,7 @@ struct RunFolder {
   CsvTable correlations;
   CsvTable identifiability;
   CsvTable identified;
+  CsvTable curves;
   CsvTable posterior;
   CsvTable sbc;
   CsvTable baselines;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/analysis/curve_estimates.hpp"
 #include "framework/analysis/derived_metrics.hpp"
 #include "framework/analysis/identifiability.hpp"
 #include "framework/analysis/joint_metrics.hpp"
@@ -163,6 +164,7 @@ struct Evaluation {
   std::vector<MethodSummary> methods;  ///< empty where nothing was refined
   std::vector<MapComparison> maps;
   std::optional<DerivedEvaluation> derived;  ///< where the experiment derives quantities
+  CurveEstimates curves;                     ///< of some samples, where the model has curves
 };
 
 /// Everything that the tables of one run show.

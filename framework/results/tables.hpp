@@ -30,6 +30,9 @@ std::string makePredictionsCsv(const RunSummary& run);
 /// limit_stddev where the limit is known. Needs Evaluation::derived.
 std::string makeDerivedCsv(const RunSummary& run);
 
+/// curves.csv: sample, curve, argument, true, inferred, lower, upper (of 95 %). Needs Evaluation::curves.
+std::string makeCurvesCsv(const RunSummary& run);
+
 /// failures.csv: set, sample, the value of each parameter of the sampled box, reason.
 std::string makeFailuresCsv(const std::vector<ParameterSpec>& sampled,
                             const std::vector<FailedSample>& failures);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "framework/experiment/expression/curve.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -32,6 +33,7 @@ ModelNumbers::ModelNumbers(const ModelSpec& model) : model_(model), sampled_(col
     constants_.push_back(values_.bind(constant.value));
     defineName(values_, constant.name);
   }
+  defineCurves(model.system.curves, values_);
 }
 
 void ModelNumbers::update(const Eigen::Ref<const Eigen::VectorXd>& point) {

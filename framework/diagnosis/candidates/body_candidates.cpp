@@ -31,6 +31,32 @@ void addCorrection(TermCandidate candidate, std::size_t index, const BodyExpress
   candidates.push_back(std::move(candidate));
 }
 
+/// About each axis, or about the joint's alone where the file gives no other.
+void addMoments(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
+                std::vector<TermCandidate>& candidates) {
+  const std::string& name = body.name.text;
+  const auto add = [&](const std::string& key, const std::string& axis, const BodyExpression& get) {
+    addCorrection({key + "." + name,
+                   fmt::format("another moment of inertia of {} about its {}, by c", name, axis),
+                   "kg m2",
+                   kMuch * sizes.moments[index],
+                   false,
+                   {},
+                   false,
+                   {}},
+                  index, get, candidates);
+  };
+  if (!body.inertia.about_axis.text.empty()) {
+    add("inertia", "joint's axis",
+        [](BodySpec& changed) -> Expression& { return changed.inertia.about_axis; });
+    return;
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    add(std::string("inertia_") + kAxes[axis], kAxes[axis],
+        [axis](BodySpec& changed) -> Expression& { return changed.inertia.moments[axis]; });
+  }
+}
+
 void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
              std::vector<TermCandidate>& candidates) {
   const std::string& name = body.name.text;
@@ -55,18 +81,8 @@ void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
          false,
          {}},
         index, [axis](BodySpec& changed) -> Expression& { return changed.center_of_mass[axis]; }, candidates);
-    addCorrection(
-        {fmt::format("inertia_{}.{}", kAxes[axis], name),
-         fmt::format("another moment of inertia of {} about its {}, by c", name, kAxes[axis]),
-         "kg m2",
-         kMuch * sizes.moments[index],
-         false,
-         {},
-         false,
-         {}},
-        index, [axis](BodySpec& changed) -> Expression& { return changed.inertia.moments[axis]; },
-        candidates);
   }
+  addMoments(body, index, sizes, candidates);
 }
 
 Eigen::Vector3d calcCross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

@@ -111,7 +111,7 @@ double calcLargest(const NamedValues<double>& names, const Expression3& expressi
 
 void setBodySizes(const ModelSpec& model, const NamedValues<double>& names, ModelSizes& sizes) {
   for (const BodySpec& body : model.system.bodies) {
-    const double mass = names.calc(body.mass), moment = calcLargest(names, body.inertia.moments);
+    const double mass = names.calc(body.mass), moment = calcLargest(names, getMoments(body.inertia));
     const double gyradius = mass > 0.0 ? std::sqrt(moment / mass) : 0.0;
     sizes.masses.push_back(mass);
     sizes.moments.push_back(moment);

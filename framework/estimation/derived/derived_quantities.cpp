@@ -56,6 +56,13 @@ DerivedQuantities::DerivedQuantities(const ExperimentSpec& experiment)
       names_.define(constant.name.text);
     }
   }
+  for (const CurveSpec& curve : experiment.model.system.curves) {
+    const bool follows = std::all_of(curve.values.begin(), curve.values.end(),
+                                     [this](const Expression& value) { return isBoundTo(value, names_); });
+    if (follows) {
+      defineCurves({curve}, names_);
+    }
+  }
   for (const DerivedSpec& derived : experiment.derived) {
     expressions_.push_back(names_.bind(derived.value));
     names_.define(derived.name.text);

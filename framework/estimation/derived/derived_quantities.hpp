@@ -6,7 +6,7 @@
 #include "framework/estimation/derived/value_distribution.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/experiment/experiment_spec.hpp"
-#include "framework/experiment/expression/named_values.hpp"
+#include "framework/experiment/expression/curve.hpp"
 
 namespace twinmap {
 

@@ -27,6 +27,18 @@ class DerivedCheck {
     }
   }
 
+  /// Those that follow from updating parameters.
+  void declareCurves() {
+    for (const CurveSpec& curve : experiment_.model.system.curves) {
+      const bool follows =
+          std::all_of(curve.values.begin(), curve.values.end(),
+                      [this](const Expression& value) { return followsFromParameters(value); });
+      if (follows) {
+        scope_.defineCurve(curve.name, {}, CheckScope::readUnit(curve.unit, curve.name.where));
+      }
+    }
+  }
+
   void check(const DerivedSpec& derived) {
     requireUntaken(derived.name);
     for (const std::string& used : getUsedNames(derived.value)) {
@@ -87,6 +99,7 @@ void checkDerived(const ExperimentSpec& experiment) {
     return;
   }
   DerivedCheck check(experiment);
+  check.declareCurves();
   for (const DerivedSpec& derived : experiment.derived) {
     check.check(derived);
   }

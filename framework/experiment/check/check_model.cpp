@@ -10,6 +10,7 @@
 #include "framework/experiment/check/check_scope.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/joint_type.hpp"
+#include "framework/experiment/model/named_forces.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/prior.hpp"
 
@@ -110,6 +111,8 @@ class FieldCheck {
     }
   }
   void optionalMap(const char*, const std::vector<NamedExpression>&, const char*) {}
+  /// checkCurves() does.
+  void optionalMap(const char*, const std::vector<CurveSpec>&, const char*) {}
   /// checkSampled() does.
   void optionalMap(const char*, const std::vector<ControllerSpec>&, const char*) {}
   template <class... Choices>
@@ -118,6 +121,7 @@ class FieldCheck {
      ...);
   }
   void rule(bool, const char*) const {}
+  void scalarIsValueOf(const char*) const {}
   void location(const SourceLocation&) const {}
 
   /// All fields of a struct, which are read only.
@@ -223,11 +227,13 @@ class ModelCheck {
   void run() {
     declareParameters();
     declareConstants();
+    declareCurves();
     declareDynamics();
     checkJoints();
     fields_.checkAll(model_.system);
     checkPairs(model_);
     checkConstraints();
+    checkNames();
     checkExcitation();
     checkInitial();
     checkOutputs();
@@ -253,6 +259,48 @@ class ModelCheck {
       fields_.constants.define(constant.name, CheckScope::readUnit(constant.unit, constant.name.where),
                                value);
     }
+  }
+
+  void declareCurves() {
+    const std::vector<CurveSpec>& curves = model_.system.curves;
+    for (const CurveSpec& curve : curves) {
+      for (const Expression& value : curve.values) {
+        fields_.constants.check(value, curve.unit);
+      }
+    }
+    for (const CurveSpec& curve : curves) {
+      fields_.constants.defineCurve(curve.name, findDimension(curve.over),
+                                    CheckScope::readUnit(curve.unit, curve.name.where));
+    }
+  }
+
+  /// Of a coordinate, a speed, a state or a signal; none where no unit is stated.
+  std::optional<Dimension> findDimension(const Name& name) const {
+    std::vector<std::pair<std::string, std::string>> units;
+    for (const Coordinate& coordinate : fields_.coordinates) {
+      units.emplace_back(coordinate.name.text, coordinate.unit);
+      units.emplace_back(coordinate.name.text + "_dot", coordinate.unit + "/s");
+    }
+    for (const SignalSpec& signal : model_.excitation) {
+      units.emplace_back(signal.name.text, signal.unit);
+    }
+    for (const StateSpec& state : model_.system.states) {
+      units.emplace_back(state.name.text, state.unit);
+    }
+    for (const ControllerSpec& controller : model_.system.controllers) {
+      for (const ControllerOutputSpec& output : controller.writes) {
+        units.emplace_back(output.name.text, output.unit);
+      }
+    }
+    std::vector<std::string> known;
+    for (const auto& [text, unit] : units) {
+      known.push_back(text);
+      if (text == name.text) {
+        return CheckScope::readUnit(unit, name.where);
+      }
+    }
+    requireKnown(name, known, "a coordinate, a speed, a state or a signal");
+    return {};
   }
 
   /// Force laws also know coordinates, speeds, signals, time, states and named expressions. The reference
@@ -313,18 +361,25 @@ class ModelCheck {
       if (constraint.gear) {
         checkGear(*constraint.gear);
       } else {
-        const bool in_plane = constraint.point_in_plane.has_value();
-        const Name& from = in_plane                ? constraint.point_in_plane->plane.station.body
-                           : constraint.coincident ? constraint.coincident->from.body
-                                                   : constraint.rod->from.body;
-        const Name& to = in_plane                ? constraint.point_in_plane->station.body
-                         : constraint.coincident ? constraint.coincident->to.body
-                                                 : constraint.rod->to.body;
+        const auto [from, to] = getBodies(constraint);
         if (from.text == to.text) {
           throw ExperimentError(to.where, to.text, "must not be constrained against itself; name two bodies");
         }
       }
     }
+  }
+
+  /// Of a constraint between bodies.
+  static std::pair<Name, Name> getBodies(const ConstraintSpec& constraint) {
+    if (constraint.point_in_plane) {
+      return {constraint.point_in_plane->plane.body, constraint.point_in_plane->station.body};
+    }
+    if (constraint.weld || constraint.pin) {
+      return constraint.weld ? std::pair(constraint.weld->from.body, constraint.weld->to.body)
+                             : std::pair(constraint.pin->from.body, constraint.pin->to.body);
+    }
+    return constraint.coincident ? std::pair(constraint.coincident->from.body, constraint.coincident->to.body)
+                                 : std::pair(constraint.rod->from.body, constraint.rod->to.body);
   }
 
   /// A ratio is a length per angle, or the other way round, where the coordinates differ.
@@ -343,6 +398,7 @@ class ModelCheck {
         throw ExperimentError(body.name.where, "ground", "is the inertial frame; choose another name");
       }
       checkJoint(body.joint, body.name);
+      checkInertia(body);
     }
   }
 
@@ -354,6 +410,68 @@ class ModelCheck {
     if (has_pitch != getTraits(joint.type).has_pitch) {
       throw ExperimentError(has_pitch ? joint.pitch.where : body.where, joint.pitch.text,
                             "a screw needs joint.pitch, other joints have none");
+    }
+  }
+
+  /// One moment of inertia is about the axis of a joint that has a single one.
+  static void checkInertia(const BodySpec& body) {
+    const JointType type = body.joint.type;
+    const Expression& about_axis = body.inertia.about_axis;
+    if (!about_axis.text.empty() && type != JointType::kPin && type != JointType::kPlanar &&
+        type != JointType::kCylinder) {
+      throw ExperimentError(about_axis.where, about_axis.text,
+                            "is about a joint's axis, which pin, planar and cylinder joints have; give "
+                            "'moments: [Ixx, Iyy, Izz]' here");
+    }
+  }
+
+  /// Outputs call joints and forces by their names.
+  void checkNames() const {
+    std::vector<std::string> joints;
+    for (const BodySpec& body : model_.system.bodies) {
+      declareOnce(getJointName(body), "a joint", joints);
+    }
+    std::vector<std::string> forces;
+    for (const NamedForce& force : listNamedForces(model_.system)) {
+      declareOnce(force.name, "a force element or constraint", forces);
+    }
+    for (const OutputSpec& output : model_.outputs) {
+      if (output.reaction) {
+        requireKnown(output.reaction->joint, joints, "a joint, or its body");
+      }
+      if (output.force_of) {
+        requireKnown(*output.force_of, forces, "the name of a force element or constraint");
+        checkComponent(output, *findNamedForce(model_.system, output.force_of->text));
+      }
+    }
+  }
+
+  static void declareOnce(const Name& name, const char* what, std::vector<std::string>& names) {
+    if (std::find(names.begin(), names.end(), name.text) != names.end()) {
+      throw ExperimentError(name.where, name.text,
+                            std::string("is the name of another already, and ") + what + " needs its own");
+    }
+    names.push_back(name.text);
+  }
+
+  static void checkComponent(const OutputSpec& output, const NamedForce& force) {
+    const ForceParts& parts = force.parts;
+    const bool known =
+        !output.component ? parts.along : (isMoment(*output.component) ? parts.moment : parts.force);
+    if (!known) {
+      std::vector<std::string> choices;
+      if (parts.along) {
+        choices.emplace_back("no component");
+      }
+      if (parts.force) {
+        choices.emplace_back("force_x, force_y or force_z");
+      }
+      if (parts.moment) {
+        choices.emplace_back("moment_x, moment_y or moment_z");
+      }
+      throw ExperimentError(
+          output.force_of->where, output.force_of->text,
+          fmt::format("is a {}: give {} in 'component'", force.noun, fmt::join(choices, ", or ")));
     }
   }
 

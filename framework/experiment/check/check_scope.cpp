@@ -57,6 +57,9 @@ bool needsLikeOperands(program::Operation operation) {
   }
 }
 
+/// Of any curve at any argument.
+constexpr double kSomeCurveValue = 0.41;
+
 /// A part of an expression, in two sets of base units. A number may carry any unit.
 struct ScaledTerm {
   double value, scaled;
@@ -106,19 +109,46 @@ void CheckScope::defineDifference(const Name& name, const Expression& expression
   symbols_.push_back(symbol);
 }
 
+void CheckScope::defineCurve(const Name& name, const std::optional<Dimension>& over,
+                             const std::optional<Dimension>& dimension) {
+  requireFree(name);
+  const auto calc_change = [](const std::optional<Dimension>& of) {
+    return of ? std::make_optional(calcUnitChange(*of)) : std::nullopt;
+  };
+  const std::optional<double> change = calc_change(dimension);
+  curves_.push_back(
+      {name.text, calc_change(over), change ? std::make_optional(kSomeCurveValue * *change) : std::nullopt});
+}
+
 void CheckScope::add(const Name& name, const Symbol& symbol) {
+  requireFree(name);
+  names_.push_back(name.text);
+  symbols_.push_back(symbol);
+}
+
+void CheckScope::requireFree(const Name& name) const {
   requireIdentifier(name);
   if (isReservedName(name.text)) {
     throw ExperimentError(name.where, name.text, "is reserved in expressions; choose another name");
   }
-  if (std::find(names_.begin(), names_.end(), name.text) != names_.end()) {
+  const bool is_curve = std::any_of(curves_.begin(), curves_.end(),
+                                    [&](const Curve& curve) { return curve.name == name.text; });
+  if (is_curve || std::find(names_.begin(), names_.end(), name.text) != names_.end()) {
     throw ExperimentError(
         name.where, name.text,
         "is taken; parameters, nuisance, inputs, constants, coordinates, speeds (<coordinate>_dot), states, "
-        "expressions and excitation signals share one name space");
+        "expressions, curves and excitation signals share one name space");
   }
-  names_.push_back(name.text);
-  symbols_.push_back(symbol);
+}
+
+const CheckScope::Curve& CheckScope::findCurve(const ExpressionTree::Call& call,
+                                               const Expression& expression) const {
+  const auto found = std::find_if(curves_.begin(), curves_.end(),
+                                  [&](const Curve& curve) { return curve.name == call.name; });
+  if (found == curves_.end()) {
+    calcScaled(expression, false);  // throws, with the place
+  }
+  return *found;
 }
 
 void CheckScope::defineTime() {
@@ -167,14 +197,38 @@ void CheckScope::check(const Expression3& expressions, const std::string& unit) 
 }
 
 bool CheckScope::hasUnit(const Expression& expression) const {
-  return isUnitStated(getUsedNames(expression)) && !hasFreeNumber(expression.text);
+  const std::vector<ExpressionTree::Call> calls = parseExpression(expression).calls;
+  const bool known = std::all_of(calls.begin(), calls.end(), [&](const ExpressionTree::Call& call) {
+    return findCurve(call, expression).scaled_value.has_value();
+  });
+  return known && isUnitStated(getUsedNames(expression)) && !hasFreeNumber(expression.text);
+}
+
+void CheckScope::requireArgument(const Curve& curve, double value, double scaled,
+                                 const Expression& expression) const {
+  constexpr double kTolerance = 1e-9;  // as in check()
+  const double expected = curve.over.value_or(1.0) * value;
+  if (curve.over && std::isfinite(scaled) && std::isfinite(expected) &&
+      std::abs(scaled - expected) > kTolerance * std::abs(expected)) {
+    throw ExperimentError(expression.where, expression.text,
+                          "calls the curve '" + curve.name +
+                              "' with what is not in the unit of what it is a curve of ('over')");
+  }
 }
 
 void CheckScope::requireLikeTerms(const Expression& expression) const {
   const ExpressionTree tree = parseExpression(expression);
   std::vector<ScaledTerm> terms;
   for (const ExpressionTree::Node& node : tree.nodes) {
-    if (node.operation == program::Operation::kLiteral) {
+    if (node.call >= 0) {
+      const Curve& curve = findCurve(tree.calls[node.call], expression);
+      const ScaledTerm& argument = terms[node.operands[0]];
+      if (!argument.has_number) {
+        requireArgument(curve, argument.value, argument.scaled, expression);
+      }
+      terms.push_back(
+          {kSomeCurveValue, curve.scaled_value.value_or(kSomeCurveValue), !curve.scaled_value.has_value()});
+    } else if (node.operation == program::Operation::kLiteral) {
       terms.push_back({node.literal, node.literal, true});
     } else if (node.operation == program::Operation::kParameter) {
       const auto found = std::find(names_.begin(), names_.end(), tree.names[node.operands[0]]);
@@ -213,6 +267,13 @@ bool CheckScope::isUnitStated(const std::vector<std::string>& names) const {
 
 double CheckScope::calcScaled(const Expression& expression, bool scaled) const {
   NamedValues<double> values;
+  for (const Curve& curve : curves_) {
+    const double value = scaled ? curve.scaled_value.value_or(kSomeCurveValue) : kSomeCurveValue;
+    values.defineFunction(curve.name, [value](std::vector<ExpressionTree::Node>& nodes, int) {
+      nodes.push_back({program::Operation::kLiteral, value, {-1, -1, -1}});
+      return static_cast<int>(nodes.size()) - 1;
+    });
+  }
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const double value = symbols_[i].reference_value;
     values.define(names_[i], scaled ? symbols_[i].scaled_value.value_or(value) : value);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/experiment/expression/expression.hpp"
+#include "framework/experiment/expression/expression_tree.hpp"
 #include "framework/experiment/expression/units.hpp"
 
 namespace twinmap {
@@ -22,6 +22,11 @@ class CheckScope {
 
   /// The same for its rate of change, under a name that cannot be taken: difference(<expression>).
   void defineDifference(const Name& name, const Expression& expression);
+
+  /// Lets expressions call a curve. `over`: the dimension of what it is a curve of, if that is stated. Throws
+  /// ExperimentError for a name that is taken or reserved.
+  void defineCurve(const Name& name, const std::optional<Dimension>& over,
+                   const std::optional<Dimension>& dimension);
 
   /// Adds the time t in s, which only force laws know.
   void defineTime();
@@ -43,7 +48,15 @@ class CheckScope {
     double reference_value;
     std::optional<double> scaled_value;  ///< in other base units; none where its unit is not known
   };
+  /// A function by the change of its argument and of its value in other base units, where they are known.
+  struct Curve {
+    std::string name;
+    std::optional<double> over, scaled_value;
+  };
+  void requireFree(const Name& name) const;
   void add(const Name& name, const Symbol& symbol);
+  const Curve& findCurve(const ExpressionTree::Call& call, const Expression& expression) const;
+  void requireArgument(const Curve& curve, double value, double scaled, const Expression& expression) const;
   bool hasUnit(const Expression& expression) const;
   void requireLikeTerms(const Expression& expression) const;
   bool isUnitStated(const std::vector<std::string>& names) const;
@@ -51,6 +64,7 @@ class CheckScope {
 
   std::vector<std::string> names_;
   std::vector<Symbol> symbols_;
+  std::vector<Curve> curves_;
   bool changes_ = false;  ///< some of the names change in time
 };
 

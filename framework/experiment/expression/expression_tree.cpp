@@ -230,6 +230,12 @@ class Parser {
     if (const auto fold = kFolds.find(name); fold != kFolds.end()) {
       return addFold(name, fold->second, operands);
     }
+    if (operands.size() == 1 && name != "atan2" && unary == kUnaryFunctions.end()) {
+      tree_.calls.push_back({name, begin + 1});
+      const int node = add(Operation::kLiteral, operands[0]);
+      tree_.nodes.back().call = static_cast<int>(tree_.calls.size()) - 1;
+      return node;
+    }
     at_ = begin;
     fail(name == "atan2" ? fmt::format("'atan2' takes two operands, not {},", operands.size())
          : unary != kUnaryFunctions.end()

@@ -16,9 +16,16 @@ struct ExpressionTree {
     program::Operation operation = program::Operation::kLiteral;
     double literal = 0.0;                     ///< of kLiteral
     std::array<int, 3> operands{-1, -1, -1};  ///< nodes before this one; of kParameter, its place in `names`
+    int call = -1;  ///< its place in `calls`: then a function of the first operand that names are bound to
+  };
+  /// A function that is none of the grammar's: perhaps a curve.
+  struct Call {
+    std::string name;
+    std::size_t character;
   };
   std::vector<Node> nodes;         ///< the last one is the value
   std::vector<std::string> names;  ///< in order of appearance
+  std::vector<Call> calls;
 };
 
 /// Parses an expression. From the weakest to the strongest:
@@ -34,8 +41,9 @@ struct ExpressionTree {
 ///
 /// then numbers (decimal), names, parentheses and functions: those of one operand in operation_list.hpp, ln
 /// (log), atan2(y, x), and of any number of operands min, max, sum and avg; the constants pi, _pi and _e.
-/// Throws ExperimentError with the character at which it is not understood, for an assignment, for more than
-/// 4000 characters or 1024 levels of nesting. Cost: linear in its length.
+/// Other functions of one operand are left to who binds the names. Throws ExperimentError with the character
+/// at which it is not understood, for an assignment, for more than 4000 characters or 1024 levels of nesting.
+/// Cost: linear in its length.
 ExpressionTree parseExpression(const Expression& expression);
 
 }  // namespace twinmap

@@ -20,9 +20,17 @@ int DefinedNames::findPlace(const std::string& name) const {
   return found == places_.end() ? -1 : found->second;
 }
 
+void DefinedNames::defineFunction(const std::string& name, FunctionExpansion expansion) {
+  if (!functions_.emplace(name, std::move(expansion)).second) {
+    throw std::invalid_argument("the function '" + name + "' is defined twice");
+  }
+}
+
 BoundExpression DefinedNames::bind(const Expression& expression) const {
-  ExpressionTree tree = parseExpression(expression);
-  for (ExpressionTree::Node& node : tree.nodes) {
+  const ExpressionTree tree = parseExpression(expression);
+  BoundExpression bound;
+  std::vector<int> places;  // of the tree's nodes: functions are longer
+  for (ExpressionTree::Node node : tree.nodes) {
     if (node.operation == program::Operation::kParameter) {
       const std::string& name = tree.names[node.operands[0]];
       node.operands[0] = findPlace(name);
@@ -30,9 +38,35 @@ BoundExpression DefinedNames::bind(const Expression& expression) const {
         throw ExperimentError(expression.where, expression.text,
                               "uses the unknown name '" + name + "'" + suggestName(name, getNames()));
       }
+    } else {
+      for (int& operand : node.operands) {
+        operand = operand < 0 ? operand : places[operand];
+      }
+    }
+    if (node.call < 0) {
+      bound.nodes.push_back(node);
+      places.push_back(static_cast<int>(bound.nodes.size()) - 1);
+    } else {
+      places.push_back(findFunction(tree.calls[node.call], expression)(bound.nodes, node.operands[0]));
     }
   }
-  return {std::move(tree.nodes)};
+  return bound;
+}
+
+const FunctionExpansion& DefinedNames::findFunction(const ExpressionTree::Call& call,
+                                                    const Expression& expression) const {
+  const auto found = functions_.find(call.name);
+  if (found == functions_.end()) {
+    std::vector<std::string> known;
+    for (const auto& [name, expansion] : functions_) {
+      known.push_back(name);
+    }
+    throw ExperimentError(expression.where, expression.text,
+                          "is not a valid expression: there is no function '" + call.name +
+                              "' at character " + std::to_string(call.character) +
+                              suggestName(call.name, known));
+  }
+  return found->second;
 }
 
 }  // namespace twinmap

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <map>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -16,6 +18,10 @@ struct BoundExpression {
   std::vector<ExpressionTree::Node> nodes;
 };
 
+/// Writes the operations of a function down behind those that are there, from the place of its operand;
+/// returns the place of its value.
+using FunctionExpansion = std::function<int(std::vector<ExpressionTree::Node>& nodes, int operand)>;
+
 /// Names in the order in which they were defined.
 class DefinedNames {
  public:
@@ -26,14 +32,22 @@ class DefinedNames {
   /// for an unknown name (with the nearest known one).
   BoundExpression bind(const Expression& expression) const;
 
+  /// Lets expressions call a function of one operand. Throws std::invalid_argument if it exists already.
+  void defineFunction(const std::string& name, FunctionExpansion expansion);
+  /// Those of other names, which begin with the same ones.
+  void takeFunctions(const DefinedNames& others) { functions_ = others.functions_; }
+
  protected:
   /// Adds a name; returns its place. Throws std::invalid_argument if it exists already.
   int addName(const std::string& name);
   int findPlace(const std::string& name) const;  ///< -1: none
 
  private:
+  const FunctionExpansion& findFunction(const ExpressionTree::Call& call, const Expression& expression) const;
+
   std::vector<std::string> names_;
   std::unordered_map<std::string, int> places_;  ///< in names_
+  std::map<std::string, FunctionExpansion> functions_;
 };
 
 /// What expressions may use, by name, and their values over a scalar S: double, or program::Symbol, which

@@ -8,8 +8,8 @@
 
 namespace twinmap {
 
-/// m, rad, m/s, rad/s or m/s2, of what is not a variable or an expression. `kind`: that of its coordinate, if
-/// it measures one.
+/// m, rad, m/s, rad/s or m/s2, of what is not a force, a variable or an expression. `kind`: that of its
+/// coordinate, if it measures one.
 const char* getOutputUnit(const OutputSpec& output, CoordinateKind kind);
 
 /// The same, or what is stated for a variable or an expression; finds the coordinate among the system's

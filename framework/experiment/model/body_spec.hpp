@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,7 @@ void describe(Fields& f, FrameSpec& s) {
 
 struct JointSpec {
   JointType type = JointType::kWeld;
+  std::optional<Name> name;         ///< for outputs; default: that of the body
   Name parent{"ground", {}};        ///< "ground" or a body declared before
   std::optional<Expression3> axis;  ///< joint axis in the joint frame; only for 1-axis joints
   Expression pitch{"", {}};         ///< m/rad, screw only
@@ -34,6 +36,7 @@ struct JointSpec {
 template <class Fields>
 void describe(Fields& f, JointSpec& s) {
   f.required("type", s.type, "kind of joint");
+  f.optional("name", s.name, "for outputs of its reaction; default: the name of the body");
   f.optional("parent", s.parent, "ground, or a body declared before", Reference::kEarlierBody);
   f.optional("coordinates", s.coordinates, "a name for each coordinate of the joint");
   f.optional("axis", s.axis, "joint axis in the joint frame (slider x, pin, screw and cylinder z by default)",
@@ -43,15 +46,38 @@ void describe(Fields& f, JointSpec& s) {
   f.optional("in_body", s.in_body, "joint frame, fixed to the body");
 }
 
+/// Either about the joint's axis alone or the whole tensor.
 struct InertiaSpec {
-  Expression3 moments;   ///< Ixx, Iyy, Izz about the body's own centre of mass, kg m2
-  Expression3 products;  ///< Ixy, Ixz, Iyz (entries of the tensor), kg m2
+  Expression about_axis{"", {}};  ///< about an axis through the centre of mass, kg m2; "": the tensor counts
+  Expression3 moments;            ///< Ixx, Iyy, Izz about the body's own centre of mass, kg m2
+  Expression3 products;           ///< Ixy, Ixz, Iyz (entries of the tensor), kg m2
 };
+
+inline bool isTensorGiven(const InertiaSpec& inertia) {
+  const auto is_given = [](const Expression& entry) { return entry.text != Expression{}.text; };
+  return std::any_of(inertia.moments.begin(), inertia.moments.end(), is_given) ||
+         std::any_of(inertia.products.begin(), inertia.products.end(), is_given);
+}
+
+/// Ixx, Iyy, Izz. A moment about the joint's axis is taken about the other axes too: those do not matter
+/// while the body moves in a plane, and a body with three equal moments exists whatever the axis is.
+inline Expression3 getMoments(const InertiaSpec& inertia) {
+  return inertia.about_axis.text.empty()
+             ? inertia.moments
+             : Expression3{inertia.about_axis, inertia.about_axis, inertia.about_axis};
+}
 
 template <class Fields>
 void describe(Fields& f, InertiaSpec& s) {
+  f.scalarIsValueOf("about_axis");
+  f.optional("about_axis", s.about_axis,
+             "of a body on a pin, planar or cylinder joint: about the joint's axis through the body's own "
+             "centre of mass",
+             Unit{"kg m2"});
   f.optional("moments", s.moments, "Ixx, Iyy, Izz about the body's own centre of mass", Unit{"kg m2"});
   f.optional("products", s.products, "tensor entries Ixy, Ixz, Iyz", Unit{"kg m2"});
+  f.rule(s.about_axis.text.empty() || !isTensorGiven(s),
+         "must give either one moment about the joint's axis or 'moments' and 'products'");
 }
 
 struct BodySpec {

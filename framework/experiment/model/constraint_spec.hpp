@@ -31,19 +31,6 @@ void describe(Fields& f, RodSpec& s) {
   f.required("length", s.length, "above 0", Unit{"m"});
 }
 
-/// A plane fixed to a body.
-struct PlaneSpec {
-  StationSpec station;
-  Expression3 normal;
-};
-
-template <class Fields>
-void describe(Fields& f, PlaneSpec& s) {
-  f.required("body", s.station.body, "a body, or ground", Reference::kBody);
-  f.optional("point", s.station.point, "a point of the plane, in the body's frame", Unit{"m"});
-  f.required("normal", s.normal, "in the body's frame; normalised", kNoUnit);
-}
-
 /// A point of a body that stays in a plane of another: a pin in a slot.
 struct PointInPlaneSpec {
   StationSpec station;
@@ -54,7 +41,29 @@ template <class Fields>
 void describe(Fields& f, PointInPlaneSpec& s) {
   f.required("body", s.station.body, "the body whose point stays in the plane", Reference::kBody);
   f.optional("point", s.station.point, "in the body's frame", Unit{"m"});
-  f.required("plane", s.plane, "of another body, or of ground");
+  f.required("plane", s.plane, "what it stays in");
+}
+
+/// Two frames of bodies that are one: no motion between them.
+struct WeldSpec {
+  AttachedFrameSpec from, to;
+};
+
+template <class Fields>
+void describe(Fields& f, WeldSpec& s) {
+  f.required("from", s.from, "a frame of one body");
+  f.required("to", s.to, "the same frame of the other");
+}
+
+/// Two frames of bodies with one origin and one z axis: a hinge that closes a loop.
+struct PinSpec {
+  AttachedFrameSpec from, to;
+};
+
+template <class Fields>
+void describe(Fields& f, PinSpec& s) {
+  f.required("from", s.from, "a frame of one body; the hinge is its z axis");
+  f.required("to", s.to, "a frame of the other with the same origin and z axis");
 }
 
 /// coordinate = ratio * driver + offset: gears, a belt, a rack and its pinion, a lead screw.
@@ -79,17 +88,21 @@ struct ConstraintSpec {
   std::optional<RodSpec> rod;
   std::optional<PointInPlaneSpec> point_in_plane;
   std::optional<GearSpec> gear;
+  std::optional<WeldSpec> weld;
+  std::optional<PinSpec> pin;
 };
 
 template <class Fields>
 void describe(Fields& f, ConstraintSpec& s) {
   f.location(s.where);
-  f.optional("name", s.name, "for messages");
+  f.optional("name", s.name, "for messages and outputs of its force (force_of)");
   f.oneOf("must give exactly one of",  //
           choice("coincident", s.coincident, "two points of bodies are one"),
           choice("rod", s.rod, "two points keep their distance"),
           choice("point_in_plane", s.point_in_plane, "a point stays in a plane of another body"),
-          choice("gear", s.gear, "two coordinates move in a ratio: gears, belts, racks"));
+          choice("gear", s.gear, "two coordinates move in a ratio: gears, belts, racks"),
+          choice("weld", s.weld, "two frames of bodies are one"),
+          choice("pin", s.pin, "two frames of bodies share origin and z axis"));
 }
 
 }  // namespace twinmap

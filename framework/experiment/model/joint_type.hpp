@@ -126,5 +126,9 @@ constexpr const char* getUnit(CoordinateKind kind) {
 constexpr const char* getSpeedUnit(CoordinateKind kind) {
   return kind == CoordinateKind::kTranslation ? "m/s" : "rad/s";
 }
+/// Of a force on it: "N" or "N m".
+constexpr const char* getForceUnit(CoordinateKind kind) {
+  return kind == CoordinateKind::kTranslation ? "N" : "N m";
+}
 
 }  // namespace twinmap

@@ -5,6 +5,7 @@
 #include "framework/experiment/model/body_spec.hpp"
 #include "framework/experiment/model/constraint_spec.hpp"
 #include "framework/experiment/model/controller_spec.hpp"
+#include "framework/experiment/model/curve_spec.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/initial_spec.hpp"
 #include "framework/experiment/model/motion_spec.hpp"
@@ -16,6 +17,7 @@ struct SystemSpec {
   Expression3 gravity;  ///< m/s2, in the ground frame; zero by default
   std::vector<BodySpec> bodies;
   std::vector<StateSpec> states;             ///< of first order
+  std::vector<CurveSpec> curves;             ///< functions that expressions of the state may use
   std::vector<NamedExpression> expressions;  ///< each may use those before it
   std::vector<MotionSpec> motions;           ///< prescribed ones
   std::vector<ControllerSpec> controllers;   ///< sampled ones
@@ -40,6 +42,7 @@ void describe(Fields& f, SystemSpec& s) {
   f.optional("gravity", s.gravity, "in the ground frame", Unit{"m/s2"});
   f.requiredMap("bodies", s.bodies, "each with its joint to a parent declared before");
   f.optionalMap("states", s.states, "states of first order: currents, temperatures, filters");
+  f.optionalMap("curves", s.curves, "static curves by their knots, for expressions: motor(u)");
   f.optionalMap("expressions", s.expressions,
                 "named once, for all expressions that may use coordinates and states");
   f.optional("motions", s.motions, "coordinates that move as a signal says");

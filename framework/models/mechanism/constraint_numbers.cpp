@@ -13,23 +13,29 @@ ConstraintNumbers calcOneConstraint(const ConstraintSpec& spec, const SystemName
     one.offset = numbers.calc(spec.gear->offset, {owner, "offset", ""});
     return one;
   }
-  const StationSpec& from = spec.coincident ? spec.coincident->from
-                            : spec.rod      ? spec.rod->from
-                                            : spec.point_in_plane->plane.station;
-  const StationSpec& to = spec.coincident ? spec.coincident->to
-                          : spec.rod      ? spec.rod->to
-                                          : spec.point_in_plane->station;
-  one.from = calcBodyPoint(from, names, numbers, owner);
-  one.to = calcBodyPoint(to, names, numbers, owner);
-  if (spec.rod) {
-    one.length = numbers.calcPositive(spec.rod->length, {owner, "length", "m"});
+  if (spec.weld || spec.pin) {
+    const AttachedFrameSpec& from = spec.weld ? spec.weld->from : spec.pin->from;
+    const AttachedFrameSpec& to = spec.weld ? spec.weld->to : spec.pin->to;
+    one.from_frame = calcFrame(from.frame, numbers, owner);
+    one.to_frame = calcFrame(to.frame, numbers, owner);
+    one.from = {names.findBody(from.body), one.from_frame.point};
+    one.to = {names.findBody(to.body), one.to_frame.point};
+    return one;
   }
   if (spec.point_in_plane) {
-    const Expression3& normal = spec.point_in_plane->plane.normal;
-    one.normal = calcVector(numbers, normal, {owner, "normal", ""});
+    const PlaneSpec& plane = spec.point_in_plane->plane;
+    one.from = {names.findBody(plane.body), calcVector(numbers, plane.point, {owner, "point", "m"})};
+    one.to = calcBodyPoint(spec.point_in_plane->station, names, numbers, owner);
+    one.normal = calcVector(numbers, plane.normal, {owner, "normal", ""});
     if (one.normal.squaredNorm() == 0.0) {
-      throw SimulationFailure(owner + ": normal must not be zero", normal[0].where);
+      throw SimulationFailure(owner + ": normal must not be zero", plane.normal[0].where);
     }
+    return one;
+  }
+  one.from = calcBodyPoint(spec.coincident ? spec.coincident->from : spec.rod->from, names, numbers, owner);
+  one.to = calcBodyPoint(spec.coincident ? spec.coincident->to : spec.rod->to, names, numbers, owner);
+  if (spec.rod) {
+    one.length = numbers.calcPositive(spec.rod->length, {owner, "length", "m"});
   }
   return one;
 }

@@ -8,9 +8,10 @@ namespace twinmap {
 
 /// The numbers of a constraint for one parameter set; of its kind, the others are 0.
 struct ConstraintNumbers {
-  BodyPoint from{}, to{};    ///< of a point in a plane: a point of the plane, and the point
-  Eigen::Vector3d normal{};  ///< of the plane, of any length but 0
-  double length = 0.0;       ///< positive
+  BodyPoint from{}, to{};                 ///< of a point in a plane: a point of the plane, and the point
+  FrameNumbers from_frame{}, to_frame{};  ///< of a weld or pin
+  Eigen::Vector3d normal{};               ///< of the plane, of any length but 0
+  double length = 0.0;                    ///< positive
   int coordinate = -1, driver = -1;
   double ratio = 0.0, offset = 0.0;
 };

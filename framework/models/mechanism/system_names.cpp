@@ -48,12 +48,14 @@ SystemNames::SystemNames(const SystemSpec& system) {
     addBody(body);
   }
   addStates(system);
+  forces_ = listNamedForces(system);
 }
 
 void SystemNames::addBody(const BodySpec& body) {
   checkJoint(body);
   find(body_names_, body.joint.parent, "\"ground\" or a body declared before");
   addOnce(body_names_, body.name);
+  addOnce(joint_names_, getJointName(body));
   addCoordinates(body.joint, static_cast<int>(body_names_.size()) - 1);
 }
 
@@ -86,6 +88,22 @@ int SystemNames::findBody(const Name& name) const {
 
 int SystemNames::findCoordinate(const Name& name) const {
   return find(coordinate_names_, name, "a coordinate");
+}
+
+int SystemNames::findJoint(const Name& name) const {
+  const int body = find(joint_names_, name, "a joint");
+  if (body == 0) {
+    throw ExperimentError(name.where, name.text, "has no joint");
+  }
+  return body;
+}
+
+const NamedForce& SystemNames::findForce(const Name& name) const {
+  std::vector<std::string> names;
+  for (const NamedForce& force : forces_) {
+    names.push_back(force.name.text);
+  }
+  return forces_[find(names, name, "the name of a force element or constraint")];
 }
 
 int SystemNames::findForcedCoordinate(const Name& name) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/experiment/model/joint_type.hpp"
+#include "framework/experiment/model/named_forces.hpp"
 #include "framework/experiment/model/system_spec.hpp"
 
 namespace twinmap {
@@ -30,6 +31,11 @@ class SystemNames {
   /// The same, for one that takes forces; else ExperimentError.
   int findForcedCoordinate(const Name& name) const;
 
+  /// The body of a joint, which is called by its own name or that of its body.
+  int findJoint(const Name& name) const;
+  /// A force element or constraint by its name.
+  const NamedForce& findForce(const Name& name) const;
+
   const std::vector<std::string>& getCoordinateNames() const { return coordinate_names_; }
   const std::vector<CoordinatePlace>& getCoordinates() const { return coordinates_; }
   /// The system's states, then those of its elements in the order of forEachType; those that the file does
@@ -41,7 +47,8 @@ class SystemNames {
   void addStates(const SystemSpec& system);
   void addCoordinates(const JointSpec& joint, int body);
 
-  std::vector<std::string> body_names_{"ground"};
+  std::vector<std::string> body_names_{"ground"}, joint_names_{"ground"};
+  std::vector<NamedForce> forces_;
   std::vector<std::string> coordinate_names_, state_names_;
   std::vector<CoordinatePlace> coordinates_;
 };

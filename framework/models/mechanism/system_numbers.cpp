@@ -55,6 +55,14 @@ std::string findUnit(const OutputSpec& output, const SystemNames& names) {
   if (!output.expression.text.empty()) {
     return output.unit;
   }
+  if (output.reaction || output.component) {
+    return getForceUnit(output.reaction ? output.reaction->component : *output.component);
+  }
+  if (output.force_of) {
+    const std::optional<Name> on = names.findForce(*output.force_of).coordinate;
+    return getForceUnit(on ? names.getCoordinates()[names.findCoordinate(*on)].traits.kind
+                           : CoordinateKind::kTranslation);
+  }
   const std::optional<Name>& coordinate = output.coordinate ? output.coordinate : output.speed;
   return getOutputUnit(output, coordinate
                                    ? names.getCoordinates()[names.findCoordinate(*coordinate)].traits.kind
@@ -65,11 +73,12 @@ void checkOne(const OutputSpec& output) {
   const int count = output.coordinate.has_value() + output.speed.has_value() + output.position.has_value() +
                     output.velocity.has_value() + output.acceleration.has_value() +
                     output.specific_force.has_value() + output.angular_velocity.has_value() +
+                    output.reaction.has_value() + output.force_of.has_value() +
                     (output.expression.text.empty() ? 0 : 1);
   if (count != 1) {
     throw ExperimentError(output.name.where, output.name.text,
                           "must measure one of coordinate, speed, position, velocity, acceleration, "
-                          "specific_force, angular_velocity, expression");
+                          "specific_force, angular_velocity, reaction, force_of, expression");
   }
 }
 
@@ -91,6 +100,21 @@ OutputNumbers calcQuantity(const OutputSpec& spec, const SystemNames& names, Mod
   }
   if (!spec.expression.text.empty()) {
     return {OutputKind::kExpression, -1, {0, Vector3d::Zero()}, Vector3d::Zero(), &spec.expression, {}};
+  }
+  if (spec.reaction) {
+    return {OutputKind::kReaction,   -1,      {names.findJoint(spec.reaction->joint), Vector3d::Zero()},
+            Vector3d::Zero(),        nullptr, {},
+            spec.reaction->component};
+  }
+  if (spec.force_of) {
+    return {OutputKind::kForce,
+            -1,
+            {0, Vector3d::Zero()},
+            Vector3d::Zero(),
+            nullptr,
+            {},
+            spec.component,
+            &names.findForce(*spec.force_of)};
   }
   if (spec.specific_force || spec.angular_velocity) {
     const BodySensorSpec& at = spec.specific_force ? *spec.specific_force : *spec.angular_velocity;
@@ -191,10 +215,14 @@ MassNumbers calcMassNumbers(const BodySpec& body, ModelNumbers& numbers) {
   MassNumbers mass{};
   mass.mass = numbers.calcPositive(body.mass, {owner, "mass", "kg"});
   mass.center = calcVector(numbers, body.center_of_mass, {owner, "center_of_mass", "m"});
-  mass.moments = calcVector(numbers, body.inertia.moments, {owner, "inertia.moments", "kg m2"});
+  const Expression& about_axis = body.inertia.about_axis;
+  mass.moments = about_axis.text.empty()
+                     ? calcVector(numbers, body.inertia.moments, {owner, "inertia.moments", "kg m2"})
+                     : Vector3d::Constant(numbers.calc(about_axis, {owner, "inertia", "kg m2"}));
   mass.products = calcVector(numbers, body.inertia.products, {owner, "inertia.products", "kg m2"});
   checkRange(body, owner, mass.mass, mass.center);
-  checkInertia(owner, calcPrincipalMoments(mass.moments, mass.products), body.inertia.moments[0].where);
+  checkInertia(owner, calcPrincipalMoments(mass.moments, mass.products),
+               about_axis.text.empty() ? body.inertia.moments[0].where : about_axis.where);
   return mass;
 }
 
@@ -263,6 +291,11 @@ void checkNumbers(ModelContext& context) {
   for (const BodySpec& body : system.bodies) {
     calcMassNumbers(body, numbers);
     calcJointNumbers(body, numbers);
+  }
+  for (const CurveSpec& curve : system.curves) {
+    for (const Expression& value : curve.values) {
+      numbers.calc(value, {"curve '" + curve.name.text + "'", "values", curve.unit.c_str()});
+    }
   }
   calcLoadNumbers(system, context.names, numbers);
   calcConstraintNumbers(system, context.names, numbers);

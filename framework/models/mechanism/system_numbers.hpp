@@ -43,6 +43,8 @@ enum class OutputKind {
   kAcceleration,
   kSpecificForce,
   kAngularVelocity,
+  kReaction,
+  kForce,
   kExpression
 };
 
@@ -52,10 +54,12 @@ struct OutputNumbers {
   };
   OutputKind kind;
   int coordinate;             ///< of kCoordinate and kSpeed, else -1
-  BodyPoint station;          ///< of the others
+  BodyPoint station;          ///< of the others; of a reaction the child body
   Eigen::Vector3d direction;  ///< a unit vector, in ground axes or the body's
   const Expression* expression = nullptr;
   std::optional<Sensor> sensor;
+  std::optional<ForceComponent> component{};  ///< of kReaction and kForce
+  const NamedForce* force = nullptr;          ///< of kForce
 };
 
 Eigen::Vector3d calcVector(ModelNumbers& numbers, const Expression3& expressions, const Quantity& quantity);

@@ -19,6 +19,8 @@ void addMethods(const RunFolder& run, Page& page);
 void addComparedMaps(const RunFolder& run, Page& page);
 /// A typical estimate beside its bounds, and which parameters are correlated.
 void addParameters(const RunFolder& run, Page& page);
+/// Curves that the model has, true and estimated, with their bands.
+void addCurves(const RunFolder& run, Page& page);
 void addInferred(const RunFolder& run, Page& page);
 void addStddevOverBox(const RunFolder& run, Page& page);
 void addCalibration(const RunFolder& run, Page& page);

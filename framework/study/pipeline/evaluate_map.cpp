@@ -212,6 +212,7 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const Tr
   const Estimates estimates = selectEstimates(predictions, map.residual_correlation, refined);
   result.evaluation = evaluateEstimates(parameters, test.parameters, estimates, limit_stddev);
   result.evaluation.derived = evaluateDerivedOf(study, test, estimates, limit);
+  result.evaluation.curves = estimateCurves(study.experiment, test.parameters, estimates);
   result.evaluation.methods =
       summarizeMethods(map.name, parameters, test.parameters, predictions, refined, limit_stddev);
   result.evaluation.refined = refined;
@@ -249,8 +250,9 @@ PosteriorEvaluation evaluatePosteriors(const Study& study, PreparedData& data) {
     return values.cols() > 0 ? Eigen::MatrixXd(values(Eigen::all, reliable.samples)) : Eigen::MatrixXd();
   };
   Evaluation& evaluation = result.evaluated.evaluation;
-  evaluation = evaluateEstimates(parameters, choose(test.parameters), std::move(reliable.estimates),
-                                 choose(limit_stddev));
+  evaluation =
+      evaluateEstimates(parameters, choose(test.parameters), reliable.estimates, choose(limit_stddev));
+  evaluation.curves = estimateCurves(study.experiment, choose(test.parameters), reliable.estimates);
   evaluation.methods = {summarizePosteriors(parameters, test.parameters, exact, limit_stddev)};
   if (limit) {
     addLimit(study, test, *limit, result.evaluated);

@@ -61,6 +61,8 @@ struct Stop {
   std::optional<S> above{}, below{};
   std::optional<S> stiffness{}, exponent{}, dissipation{};
   std::optional<S> restitution{};
+  OwnNameOf<S> name{};
+  int mode = -1;  ///< of a rigid one: its place among the modes of switches
 
   bool isRigid() const { return restitution.has_value(); }
 };
@@ -80,6 +82,7 @@ void describe(Fields& f, Stop<S>& s) {
              Unit{"s/m", "s/rad"});
   f.optional("restitution", s.restitution, "of a rigid stop: speed behind an impact for that before, 0 to 1",
              Unit{"1"});
+  describeName(f, s.name);
   f.rule(s.above.has_value() != s.below.has_value(), "must give either 'above' or 'below'");
   f.rule(s.stiffness.has_value() != s.restitution.has_value(),
          "must give either 'stiffness' (an elastic stop) or 'restitution' (a rigid one)");
@@ -96,7 +99,7 @@ S calcStopGap(const Stop<S>& s, const S& place) {
 template <class S, class Sum>
 void addForces(const Stop<S>& s, Sum& sum) {
   if (s.isRigid()) {
-    return;
+    return sum.addBetween(s.coordinate, s.against, sum.getHeld(s.mode));
   }
   const S apart = sum.calcDifference(s.coordinate, s.against), rate = sum.calcSlip(s.coordinate, s.against);
   const ContactLaw<S> law{*s.stiffness, s.dissipation ? *s.dissipation : S(0.0), s.exponent};
@@ -112,6 +115,7 @@ struct Backlash {
   OtherCoordinateOf<S> against{};
   S gap{};
   ContactLaw<S> law{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -121,6 +125,7 @@ void describe(Fields& f, Backlash<S>& s) {
              Reference::kForcedCoordinate);
   f.required("gap", s.gap, "the whole play", Unit{"m", "rad"});
   describe(f, s.law);
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
@@ -132,41 +137,16 @@ void addForces(const Backlash<S>& s, Sum& sum) {
   sum.addBetween(s.coordinate, s.against, force);
 }
 
-/// A plane fixed to a body; `normal` points to the side that is free.
-template <class S>
-struct Plane {
-  BodyOf<S> body = makeGround();
-  VectorOf<S> point{}, normal{};
-
- private:
-  static BodyOf<S> makeGround() {
-    if constexpr (kIsFile<S>) {
-      return {"ground", {}};
-    } else {
-      return 0;
-    }
-  }
-};
-
-template <class S>
-inline constexpr bool kIsPart<Plane<S>> = true;
-
-template <class Fields, class S>
-void describe(Fields& f, Plane<S>& s) {
-  f.optional("body", s.body, "the body that has the plane; default: ground", Reference::kBody);
-  f.optional("point", s.point, "of the plane, in its body's frame", Unit{"m"});
-  f.required("normal", s.normal, "towards the free side, of any length", kNoUnit);
-}
-
 /// A point of a body against a plane of another, with friction mu N tanh(v / onset_speed) against the
 /// sliding speed v.
 template <class S>
 struct Contact {
-  static constexpr ElementKind kKind{"contacts", "contact", "points of bodies against planes"};
+  static constexpr ElementKind kKind{"contacts", "contact", "points of bodies against planes", {true, true}};
   Station<S> station;
   Plane<S> plane;
   ContactLaw<S> law{};
   std::optional<S> friction{}, onset_speed{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -177,6 +157,7 @@ void describe(Fields& f, Contact<S>& s) {
   describe(f, s.law);
   f.optional("friction", s.friction, "coefficient of friction mu", Unit{"1"});
   f.optional("onset_speed", s.onset_speed, "of friction: mu N tanh(v / onset_speed)", Unit{"m/s"});
+  describeName(f, s.name);
   f.rule(s.friction.has_value() == s.onset_speed.has_value(),
          "must give 'friction' and 'onset_speed' together");
 }

@@ -10,6 +10,7 @@ struct Spring {
   static constexpr ElementKind kKind{"springs", "spring", "linear springs on coordinates"};
   CoordinateOf<S> coordinate{};
   S stiffness{}, rest{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -18,6 +19,7 @@ void describe(Fields& f, Spring<S>& s) {
              Reference::kForcedCoordinate);
   f.required("stiffness", s.stiffness, "", Unit{"N/m", "N m/rad"});
   f.optional("rest", s.rest, "where the force vanishes", Unit{"m", "rad"});
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
@@ -31,6 +33,7 @@ struct Damper {
   static constexpr ElementKind kKind{"dampers", "damper", "linear dampers on coordinates"};
   CoordinateOf<S> coordinate{};
   S damping{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -38,6 +41,7 @@ void describe(Fields& f, Damper<S>& s) {
   f.required("coordinate", s.coordinate, "force -damping * q' on this coordinate",
              Reference::kForcedCoordinate);
   f.required("damping", s.damping, "", Unit{"N s/m", "N m s/rad"});
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
@@ -52,6 +56,7 @@ struct ForceLaw {
                                      "generalized forces on coordinates, by expression"};
   CoordinateOf<S> coordinate{};
   VaryingOf<S> force{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -59,6 +64,7 @@ void describe(Fields& f, ForceLaw<S>& s) {
   f.required("coordinate", s.coordinate, "the coordinate it acts on", Reference::kForcedCoordinate);
   f.required("force", s.force, "may use excitation signals, coordinates, speeds and t",
              Unit{"N", "N m", true});
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>

@@ -16,11 +16,19 @@
 
 namespace twinmap {
 
-/// How the experiment file and messages call an element.
+/// What of a force can be shown by an output (`force_of`).
+struct ForceParts {
+  bool along = true;   ///< one number: on its coordinate, between its two points, or on its plane
+  bool force = false;  ///< components of the force on a body
+  bool moment = false;
+};
+
+/// How the experiment file and messages call an element, and what it exerts.
 struct ElementKind {
-  const char* key;   ///< of the list of such elements: "two_point_springs"
-  const char* noun;  ///< "two-point spring"
-  const char* what;  ///< "linear springs between two stations"
+  const char* key;     ///< of the list of such elements: "two_point_springs"
+  const char* noun;    ///< "two-point spring"
+  const char* what;    ///< "linear springs between two stations"
+  ForceParts parts{};  ///< default: a force on a coordinate
 };
 
 template <class S>
@@ -52,6 +60,16 @@ using VaryingVectorOf = std::conditional_t<kIsFile<S>, Expression3, const Expres
 template <class S>
 using OwnStateOf = std::conditional_t<kIsFile<S>, std::optional<Name>, int>;
 
+/// The name by which outputs call the force of an element; its numbers need none.
+struct Nameless {};
+template <class S>
+using OwnNameOf = std::conditional_t<kIsFile<S>, std::optional<Name>, Nameless>;
+
+template <class Fields, class T>
+void describeName(Fields& f, T& name) {
+  f.optional("name", name, "for outputs of its force (force_of)");
+}
+
 /// Whether a struct is part of an element, with a description of its own.
 template <class T>
 inline constexpr bool kIsPart = false;
@@ -74,6 +92,35 @@ void describe(Fields& f, Station<S>& s) {
 
 using StationSpec = Station<Expression>;
 
+/// A plane fixed to a body. A contact's normal points to the side that is free.
+template <class S>
+struct Plane {
+  BodyOf<S> body = makeGround();
+  VectorOf<S> point{}, normal{};
+
+ private:
+  static BodyOf<S> makeGround() {
+    if constexpr (kIsFile<S>) {
+      return {"ground", {}};
+    } else {
+      return 0;
+    }
+  }
+};
+
+template <class S>
+inline constexpr bool kIsPart<Plane<S>> = true;
+
+template <class Fields, class S>
+void describe(Fields& f, Plane<S>& s) {
+  f.optional("body", s.body, "the body that has the plane; default: ground", Reference::kBody);
+  f.optional("point", s.point, "of the plane, in its body's frame", Unit{"m"});
+  f.required("normal", s.normal, "in its body's frame, of any length; of a contact, towards the free side",
+             kNoUnit);
+}
+
+using PlaneSpec = Plane<Expression>;
+
 /// A frame fixed to a body.
 template <class S>
 struct AttachedFrame {
@@ -89,6 +136,8 @@ void describe(Fields& f, AttachedFrame<S>& s) {
   f.required("body", s.body, "a body, or ground", Reference::kBody);
   f.optional("frame", s.frame, "a frame fixed to the body");
 }
+
+using AttachedFrameSpec = AttachedFrame<Expression>;
 
 /// In which frame the components of a load are given.
 enum class ForceFrame { kGround, kBody };

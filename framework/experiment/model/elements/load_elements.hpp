@@ -7,10 +7,11 @@ namespace twinmap {
 /// A force at a station.
 template <class S>
 struct AppliedForce {
-  static constexpr ElementKind kKind{"applied_forces", "force", "forces at stations"};
+  static constexpr ElementKind kKind{"applied_forces", "force", "forces at stations", {false, true}};
   Station<S> station;
   VaryingVectorOf<S> force{};
   ForceFrame frame = ForceFrame::kGround;
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -20,6 +21,7 @@ void describe(Fields& f, AppliedForce<S>& s) {
   f.required("force", s.force, "components; may use excitation signals, coordinates, speeds and t",
              Unit{"N", nullptr, true});
   f.optional("frame", s.frame, "frame of the components");
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
@@ -31,10 +33,11 @@ void addForces(const AppliedForce<S>& s, Sum& sum) {
 /// A moment on a body.
 template <class S>
 struct AppliedMoment {
-  static constexpr ElementKind kKind{"applied_moments", "moment", "moments on bodies"};
+  static constexpr ElementKind kKind{"applied_moments", "moment", "moments on bodies", {false, false, true}};
   BodyOf<S> body{};
   VaryingVectorOf<S> moment{};
   ForceFrame frame = ForceFrame::kGround;
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -43,6 +46,7 @@ void describe(Fields& f, AppliedMoment<S>& s) {
   f.required("moment", s.moment, "components; may use excitation signals, coordinates, speeds and t",
              Unit{"N m", nullptr, true});
   f.optional("frame", s.frame, "frame of the components");
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>

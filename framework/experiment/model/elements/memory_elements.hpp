@@ -89,6 +89,7 @@ struct Friction {
   std::optional<Stribeck<S>> stribeck{};
   std::optional<Bristle<S>> bristle{};
   std::optional<S> onset_speed{}, surface_speed{};
+  OwnNameOf<S> name{};
   int mode = -1;  ///< of coulomb: its place among the modes of switches
 
   bool switches() const { return model == FrictionModel::kCoulomb; }
@@ -108,6 +109,7 @@ void describe(Fields& f, Friction<S>& s) {
   f.optional("onset_speed", s.onset_speed, "of regularised: tanh(v / onset_speed)", Unit{"m/s", "rad/s"});
   f.optional("surface_speed", s.surface_speed, "of what it slides on, as of a belt; default 0",
              Unit{"m/s", "rad/s"});
+  describeName(f, s.name);
   f.rule((s.model == FrictionModel::kLugre) == s.bristle.has_value(),
          "must give 'bristle' with 'model: lugre', and only there");
   f.rule((s.model == FrictionModel::kRegularised) == s.onset_speed.has_value(),
@@ -138,7 +140,7 @@ void addForces(const Friction<S>& s, Sum& sum) {
     sum.setStateRate(s.bristle->state, change);
     friction = s.bristle->stiffness * deflection + s.bristle->damping * change + friction;
   } else if (s.switches()) {
-    friction = sum.calcSided(s.mode, level) + friction;
+    friction = sum.calcSided(s.mode, level) + friction - sum.getHeld(s.mode);
   } else {
     friction = level * tanh(v / *s.onset_speed) + friction;
   }
@@ -186,12 +188,14 @@ struct Hysteresis {
   static constexpr ElementKind kKind{"hysteresis", "hysteresis", "springs that yield, on coordinates"};
   CoordinateOf<S> coordinate{};
   BoucWen<S> bouc_wen{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
 void describe(Fields& f, Hysteresis<S>& s) {
   f.required("coordinate", s.coordinate, "the coordinate it acts on", Reference::kForcedCoordinate);
   f.required("bouc_wen", s.bouc_wen, "the model of Bouc and Wen");
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>

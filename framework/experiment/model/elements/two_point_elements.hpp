@@ -7,10 +7,11 @@ namespace twinmap {
 /// Pulls two stations together by stiffness * (distance - rest_length).
 template <class S>
 struct TwoPointSpring {
-  static constexpr ElementKind kKind{"two_point_springs", "two-point spring",
-                                     "linear springs between two stations"};
+  static constexpr ElementKind kKind{
+      "two_point_springs", "two-point spring", "linear springs between two stations", {true, true}};
   Station<S> from, to;
   S stiffness{}, rest_length{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -19,6 +20,7 @@ void describe(Fields& f, TwoPointSpring<S>& s) {
   f.required("to", s.to, "other end");
   f.required("stiffness", s.stiffness, "", Unit{"N/m"});
   f.required("rest_length", s.rest_length, "", Unit{"m"});
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
@@ -30,10 +32,11 @@ void addForces(const TwoPointSpring<S>& s, Sum& sum) {
 /// Pulls two stations together by damping * the rate of their distance.
 template <class S>
 struct TwoPointDamper {
-  static constexpr ElementKind kKind{"two_point_dampers", "two-point damper",
-                                     "linear dampers between two stations"};
+  static constexpr ElementKind kKind{
+      "two_point_dampers", "two-point damper", "linear dampers between two stations", {true, true}};
   Station<S> from, to;
   S damping{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -41,6 +44,7 @@ void describe(Fields& f, TwoPointDamper<S>& s) {
   f.required("from", s.from, "one end");
   f.required("to", s.to, "other end");
   f.required("damping", s.damping, "", Unit{"N s/m"});
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>
@@ -52,9 +56,11 @@ void addForces(const TwoPointDamper<S>& s, Sum& sum) {
 /// translations, of `to` in `from`), as Simbody's Force::LinearBushing.
 template <class S>
 struct Bushing {
-  static constexpr ElementKind kKind{"bushings", "bushing", "linear 6-component elements between two frames"};
+  static constexpr ElementKind kKind{
+      "bushings", "bushing", "linear 6-component elements between two frames", {false, true, true}};
   AttachedFrame<S> from, to;
   SixOf<S> stiffness{}, damping{};
+  OwnNameOf<S> name{};
 };
 
 template <class Fields, class S>
@@ -63,6 +69,7 @@ void describe(Fields& f, Bushing<S>& s) {
   f.required("to", s.to, "frame on the other body");
   f.required("stiffness", s.stiffness, "three translational behind three rotational", Unit{"N/m", "N m/rad"});
   f.required("damping", s.damping, "three translational behind three rotational", Unit{"N s/m", "N m s/rad"});
+  describeName(f, s.name);
 }
 
 template <class S, class Sum>

@@ -25,7 +25,8 @@ Vec3<S> normalize(const Vec3<S>& a) {
 template <class S>
 Mat33<S> calcInertia(const BodySpec& spec, const NamedValues<S>& names, const S& mass,
                      const Vec3<S>& center) {
-  const Vec3<S> moments = names.calc3(spec.inertia.moments), products = names.calc3(spec.inertia.products);
+  const Vec3<S> moments = names.calc3(getMoments(spec.inertia)),
+                products = names.calc3(spec.inertia.products);
   const Mat33<S> own{{moments.x, products.x, products.y},
                      {products.x, moments.y, products.z},
                      {products.y, products.z, moments.z}};
@@ -62,42 +63,107 @@ Station<S> calcStation(const StationSpec& spec, const SystemNames& system, const
   return {system.findBody(spec.body), names.calc3(spec.point)};
 }
 
-/// The conditions of a constraint. Those of coincident points are along the axes of a body that moves with
-/// the loop: which of them are redundant in a planar loop then stays so while the loop as a whole turns.
+/// A point of two bodies along the axes of one of them: of a body that moves with the loop, so that what is
+/// redundant in a planar loop stays so while the loop as a whole turns.
 template <class S>
-void addClosures(const ConstraintSpec& spec, const SystemNames& system, const NamedValues<S>& names,
-                 std::vector<Closure<S>>& closures) {
+void addCoincidence(const Station<S>& from, const Station<S>& to, const Mat33<S>& axes, int constraint,
+                    std::vector<Closure<S>>& closures) {
   Closure<S> closure;
-  if (spec.coincident) {
-    closure.kind = ClosureKind::kPlane;
-    closure.from = calcStation(spec.coincident->from, system, names);
-    closure.to = calcStation(spec.coincident->to, system, names);
-    if (closure.from.body == 0) {
-      std::swap(closure.from, closure.to);
-    }
-    for (const Vec3<S>& axis : {Vec3<S>{1.0, 0.0, 0.0}, Vec3<S>{0.0, 1.0, 0.0}, Vec3<S>{0.0, 0.0, 1.0}}) {
-      closure.normal = axis;
-      closures.push_back(closure);
-    }
-    return;
+  closure.kind = ClosureKind::kPlane;
+  closure.constraint = constraint;
+  closure.from = from;
+  closure.to = to;
+  for (const Vec3<S>& axis : {axes.x, axes.y, axes.z}) {
+    closure.normal = axis;
+    closures.push_back(closure);
   }
-  if (spec.rod) {
+}
+
+/// The conditions of two coincident frames (weld), or of their origins and z axes (pin). Of the orientations
+/// that differ by half turns, which meet them too, the start decides.
+template <class S>
+void addFrames(const AttachedFrameSpec& from_spec, const AttachedFrameSpec& to_spec, bool weld,
+               const SystemNames& system, const NamedValues<S>& names, Closure<S> closure,
+               std::vector<Closure<S>>& closures) {
+  Transform<S> from = calcFrame(from_spec.frame, names), to = calcFrame(to_spec.frame, names);
+  int from_body = system.findBody(from_spec.body), to_body = system.findBody(to_spec.body);
+  closure.swapped = from_body == 0;
+  if (closure.swapped) {
+    std::swap(from, to);
+    std::swap(from_body, to_body);
+  }
+  const std::size_t first = closures.size();
+  addCoincidence<S>({from_body, from.origin}, {to_body, to.origin}, from.rotation, closure.constraint,
+                    closures);
+  closure.kind = ClosureKind::kPerpendicular;
+  closure.from = {from_body, from.origin};
+  closure.to = {to_body, to.origin};
+  const auto add = [&](const Vec3<S>& normal, const Vec3<S>& across) {
+    closure.normal = normal;
+    closure.across = across;
+    closures.push_back(closure);
+  };
+  if (weld) {
+    add(from.rotation.x, to.rotation.y);
+    add(from.rotation.y, to.rotation.z);
+    add(from.rotation.z, to.rotation.x);
+  } else {
+    add(from.rotation.x, to.rotation.z);
+    add(from.rotation.y, to.rotation.z);
+  }
+  for (std::size_t i = first; i < closures.size(); ++i) {
+    closures[i].swapped = closure.swapped;
+  }
+}
+
+template <class S>
+void addGear(const GearSpec& gear, const SystemNames& system, const NamedValues<S>& names, Closure<S> closure,
+             std::vector<Closure<S>>& closures) {
+  closure.coordinate = system.findForcedCoordinate(gear.coordinate);
+  closure.driver = system.findForcedCoordinate(gear.driver);
+  closure.ratio = names.calc(gear.ratio);
+  closure.offset = names.calc(gear.offset);
+  closures.push_back(closure);
+}
+
+/// The conditions of a constraint, the file's `place`-th.
+template <class S>
+void addClosures(const ConstraintSpec& spec, int place, const SystemNames& system,
+                 const NamedValues<S>& names, std::vector<Closure<S>>& closures) {
+  Closure<S> closure;
+  closure.constraint = place;
+  if (spec.coincident) {
+    Station<S> from = calcStation(spec.coincident->from, system, names);
+    Station<S> to = calcStation(spec.coincident->to, system, names);
+    const std::size_t first = closures.size();
+    const bool swapped = from.body == 0;
+    if (swapped) {
+      std::swap(from, to);
+    }
+    addCoincidence(from, to, makeDiagonal(S(1.0)), place, closures);
+    for (std::size_t i = first; i < closures.size(); ++i) {
+      closures[i].swapped = swapped;
+    }
+  } else if (spec.rod) {
     closure.kind = ClosureKind::kRod;
     closure.from = calcStation(spec.rod->from, system, names);
     closure.to = calcStation(spec.rod->to, system, names);
     closure.length = names.calc(spec.rod->length);
+    closures.push_back(closure);
   } else if (spec.point_in_plane) {
+    const PlaneSpec& plane = spec.point_in_plane->plane;
     closure.kind = ClosureKind::kPlane;
-    closure.from = calcStation(spec.point_in_plane->plane.station, system, names);
+    closure.from = {system.findBody(plane.body), names.calc3(plane.point)};
     closure.to = calcStation(spec.point_in_plane->station, system, names);
-    closure.normal = normalize(names.calc3(spec.point_in_plane->plane.normal));
+    closure.normal = normalize(names.calc3(plane.normal));
+    closures.push_back(closure);
+  } else if (spec.gear) {
+    addGear(*spec.gear, system, names, closure, closures);
+  } else if (spec.weld) {
+    addFrames(spec.weld->from, spec.weld->to, true, system, names, closure, closures);
   } else {
-    closure.coordinate = system.findForcedCoordinate(spec.gear->coordinate);
-    closure.driver = system.findForcedCoordinate(spec.gear->driver);
-    closure.ratio = names.calc(spec.gear->ratio);
-    closure.offset = names.calc(spec.gear->offset);
+    addFrames(spec.pin->from, spec.pin->to, false, system, names, closure, closures);
   }
-  closures.push_back(closure);
 }
 
 /// Numbers without checks: those of a recorded program are symbols.
@@ -124,8 +190,8 @@ SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& syst
   }
   values.elements = calcElements<S>(spec.elements, system, UncheckedNumbers<S>{names},
                                     static_cast<int>(spec.states.size()));
-  for (const ConstraintSpec& constraint : spec.constraints) {
-    addClosures(constraint, system, names, values.closures);
+  for (std::size_t i = 0; i < spec.constraints.size(); ++i) {
+    addClosures(spec.constraints[i], static_cast<int>(i), system, names, values.closures);
   }
   values.state_count = static_cast<int>(system.getStateNames().size());
   return values;

@@ -7,8 +7,8 @@
 
 namespace twinmap::equations {
 
-/// A condition at a state: its value c, and c' = row * u, c'' = row * u' + bias. In m, or the unit of a
-/// gear's coordinate.
+/// A condition at a state: its value c, and c' = row * u, c'' = row * u' + bias. In m, rad between
+/// directions, or the unit of a gear's coordinate.
 template <class S>
 struct ClosureTerms {
   S value, bias;
@@ -88,6 +88,39 @@ ClosureTerms<S> calcRod(const SystemValues<S>& system, const Closure<S>& closure
   return terms;
 }
 
+/// Adds how fast `body` turns about `direction` for a unit of each speed of the joints that carry it but not
+/// `other`.
+template <class S>
+void addTurns(const SystemValues<S>& system, const std::vector<BodyMotion<S>>& motions, int body, int other,
+              const Vec3<S>& direction, std::vector<S>& row) {
+  const int common = findCommonBody(system, body, other);
+  for (int at = body; at != common; at = system.bodies[at].parent) {
+    for (int k = 0; k < system.bodies[at].speed_count; ++k) {
+      S& entry = row[system.bodies[at].first_speed + k];
+      entry = entry + dot(direction, motions[at].columns[k].angular);
+    }
+  }
+}
+
+/// a . b = 0 of a vector a fixed to `from` and one b fixed to `to`: it changes by (b x a) . (spin of `to`
+/// less that of `from`).
+template <class S>
+ClosureTerms<S> calcPerpendicular(const SystemValues<S>& system, const Closure<S>& closure,
+                                  const std::vector<BodyMotion<S>>& motions) {
+  const BodyMotion<S>&from = motions[closure.from.body], &to = motions[closure.to.body];
+  const Vec3<S> a = from.pose.rotation * closure.normal, b = to.pose.rotation * closure.across;
+  const Vec3<S> direction = cross(b, a);
+  const Vec3<S>&from_spin = from.velocity.angular, &to_spin = to.velocity.angular;
+  const Vec3<S> turn = cross(cross(to_spin, b), a) + cross(b, cross(from_spin, a));
+  ClosureTerms<S> terms;
+  terms.value = dot(a, b);
+  terms.row.assign(system.coordinate_count, S(0.0));
+  addTurns(system, motions, closure.to.body, closure.from.body, direction, terms.row);
+  addTurns(system, motions, closure.from.body, closure.to.body, -direction, terms.row);
+  terms.bias = dot(direction, to.bias.angular - from.bias.angular) + dot(turn, to_spin - from_spin);
+  return terms;
+}
+
 /// All conditions at the motions of the coordinates.
 template <class S>
 std::vector<ClosureTerms<S>> calcClosureTerms(const SystemValues<S>& system,
@@ -101,6 +134,9 @@ std::vector<ClosureTerms<S>> calcClosureTerms(const SystemValues<S>& system,
         break;
       case ClosureKind::kRod:
         all.push_back(calcRod(system, closure, motions));
+        break;
+      case ClosureKind::kPerpendicular:
+        all.push_back(calcPerpendicular(system, closure, motions));
         break;
       case ClosureKind::kGear: {
         ClosureTerms<S> terms{

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "framework/models/mechanism/equations/tree.hpp"
@@ -16,6 +17,19 @@ template <class S>
 struct Loads {
   std::vector<Spatial<S>> on_bodies;
   std::vector<S> on_speeds, state_rates;
+};
+
+/// None yet. `bodies`: with ground.
+template <class S>
+Loads<S> makeLoads(std::size_t bodies, std::size_t speeds, std::size_t states) {
+  return {std::vector<Spatial<S>>(bodies), std::vector<S>(speeds, S(0.0)), std::vector<S>(states, S(0.0))};
+}
+
+/// What one element exerts, for outputs of its force.
+template <class S>
+struct Exerted {
+  S along = 0.0;          ///< on its coordinate; the pull between its points; the pressure on its plane
+  Vec3<S> force, moment;  ///< on its body, or that of `to`, where it acts; in ground axes
 };
 
 /// A point of a body: from its origin in ground axes, and its place and velocity in ground.
@@ -43,17 +57,19 @@ template <class S, class Named>
 class ForceSum {
  public:
   /// All must outlive the sum. `rates`: time derivatives of the coordinates; `states`: of first order;
-  /// `modes`: of switches, or null where they are not known.
+  /// `modes`: of switches, or null where they are not known; `held`: the forces with which they hold, or null
+  /// where those are not to be added.
   ForceSum(const std::vector<BodyMotion<S>>& motions, const std::vector<S>& coordinates,
            const std::vector<S>& rates, const std::vector<S>& states, const Named& named, Loads<S>& loads,
-           const std::vector<S>* modes = nullptr)
+           const std::vector<S>* modes = nullptr, const std::vector<S>* held = nullptr)
       : motions_(motions),
         coordinates_(coordinates),
         rates_(rates),
         states_(states),
         named_(named),
         loads_(loads),
-        modes_(modes) {}
+        modes_(modes),
+        held_(held) {}
 
   const S& getCoordinate(int coordinate) const { return coordinates_[coordinate]; }
   const S& getRate(int coordinate) const { return rates_[coordinate]; }
@@ -65,6 +81,8 @@ class ForceSum {
   S calcSlip(int coordinate, const std::optional<int>& against) const {
     return against ? S(rates_[coordinate] - rates_[*against]) : rates_[coordinate];
   }
+  /// The force with which a switch holds its coordinate.
+  S getHeld(int mode) const { return held_ == nullptr || held_->empty() ? S(0.0) : (*held_)[mode]; }
   /// `level` with the sign of a mode, which is -1, 0 or 1; 0 where modes are not known.
   S calcSided(int mode, const S& level) const {
     using namespace program::real;
@@ -85,13 +103,26 @@ class ForceSum {
     return motions_[station.body].pose.rotation * station.point;
   }
 
+  /// What the element exerts whose law was called since the last takeExerted().
+  Exerted<S> takeExerted() {
+    on_coordinate_ = false;
+    return std::exchange(exerted_, {});
+  }
+
   void addAt(int body, const Vec3<S>& arm, const Vec3<S>& force) {
+    exerted_.force = force;
     loads_.on_bodies[body] = loads_.on_bodies[body] + Spatial<S>{cross(arm, force), force};
   }
   void addMoment(int body, const Vec3<S>& moment) {
+    exerted_.moment = moment;
     loads_.on_bodies[body].angular = loads_.on_bodies[body].angular + moment;
   }
+  /// The first coordinate is the element's own, another what it acts against.
   void addOnCoordinate(int coordinate, const S& force) {
+    if (!on_coordinate_) {
+      exerted_.along = force;
+      on_coordinate_ = true;
+    }
     loads_.on_speeds[coordinate] = loads_.on_speeds[coordinate] + force;
   }
 
@@ -121,8 +152,8 @@ class ForceSum {
     const S distance = sqrt(select(apart, squared, one));  // 1 in place of 0, whose root has no derivative
     const S inverse = select(apart, one / distance, zero);
     const Vec3<S> direction = scale(inverse, between);
-    const Vec3<S> pull =
-        scale(tension(distance, dot(second.velocity - first.velocity, direction)), direction);
+    exerted_.along = tension(distance, dot(second.velocity - first.velocity, direction));
+    const Vec3<S> pull = scale(exerted_.along, direction);
     addAt(from.body, first.arm, pull);
     addAt(to.body, second.arm, -pull);
   }
@@ -141,8 +172,9 @@ class ForceSum {
     const S depth = dot(normal, base.pose.rotation * plane.point - arm), rate = -dot(normal, velocity);
     const auto [pressure, in_plane] = law(depth, rate, velocity + scale(rate, normal));
     const Vec3<S> force = scale(pressure, normal) + in_plane;
-    addAt(station.body, point.arm, force);
     addAt(plane.body, arm, -force);
+    addAt(station.body, point.arm, force);
+    exerted_.along = pressure;
   }
 
   /// Acts on `to`, and against it on `from`, by `law(direction, q, q')` along each of the relative
@@ -166,10 +198,10 @@ class ForceSum {
     // virtual power: torque . angular velocity = angle forces . angle rates, so torque = N' * angle forces
     const Vec3<S> torque = from_frame.rotation * (transpose(rates) * calcForces(0, angles, spin));
     const Vec3<S> force = from_frame.rotation * calcForces(3, relative.origin, back * (at_point - carried));
-    addAt(to.body, to_arm, force);
     addAt(from.body, from_arm, -force);
-    addMoment(to.body, torque);
+    addAt(to.body, to_arm, force);
     addMoment(from.body, -torque);
+    addMoment(to.body, torque);
   }
 
  private:
@@ -178,6 +210,9 @@ class ForceSum {
   const Named& named_;
   Loads<S>& loads_;
   const std::vector<S>* modes_;
+  const std::vector<S>* held_;
+  Exerted<S> exerted_;
+  bool on_coordinate_ = false;
 };
 
 /// The forces of all elements, kind by kind.

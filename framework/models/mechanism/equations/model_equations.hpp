@@ -37,7 +37,9 @@ struct ModelMotion {
   std::vector<S> state_rates;
   std::vector<S> pivots;  ///< all positive, or the mass matrix or a loop is singular
   std::vector<BodyMotion<S>> bodies;
-  std::vector<S> held{};  ///< forces with which switches hold their coordinates
+  std::vector<S> held{};          ///< forces with which switches hold their coordinates
+  std::vector<Spatial<S>> loads;  ///< on bodies: gravity and force elements
+  std::vector<S> closure_forces;  ///< of the conditions: they act as -G' times these
 };
 
 /// The values that expressions of a state may use.
@@ -73,8 +75,7 @@ template <class S, class Named>
 Loads<S> calcLoads(const SystemSpec& spec, const SystemValues<S>& values,
                    const std::vector<BodyMotion<S>>& motions, const ModelState<S>& state,
                    const std::vector<S>& rates, const Named& named) {
-  Loads<S> loads{std::vector<Spatial<S>>(motions.size()), std::vector<S>(state.coordinates.size(), S(0.0)),
-                 std::vector<S>(state.states.size(), S(0.0))};
+  Loads<S> loads = makeLoads<S>(motions.size(), state.coordinates.size(), state.states.size());
   ForceSum<S, Named> sum(motions, state.coordinates, rates, state.states, named, loads, &state.modes);
   for (std::size_t i = 1; i < motions.size(); ++i) {
     sum.addGravity(static_cast<int>(i), values.gravity, values.bodies[i].mass, values.bodies[i].center);
@@ -119,9 +120,12 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   ConstrainedMotion<S> solution = state.modes.empty() ? solveConstrained(std::move(equations), conditions)
                                                       : solveHeld(std::move(equations), std::move(conditions),
                                                                   listHeld(values.elements, state.modes));
+  motion.loads = std::move(loads.on_bodies);
   for (std::size_t i = closures; i < solution.forces.size(); ++i) {
     motion.held.push_back(-solution.forces[i]);
   }
+  solution.forces.resize(closures);
+  motion.closure_forces = std::move(solution.forces);
   motion.accelerations = std::move(solution.accelerations);
   motion.pivots = std::move(solution.pivots);
   return motion;

@@ -3,25 +3,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "framework/models/mechanism/equations/model_equations.hpp"
+#include "framework/models/mechanism/equations/reactions.hpp"
 
 namespace twinmap::equations {
-
-/// Angular acceleration of a body and linear acceleration of its origin, in ground.
-template <class S>
-Spatial<S> calcBodyAcceleration(const SystemValues<S>& system, const ModelMotion<S>& motion, int body) {
-  // the accelerations that u' adds run down the tree as velocities do
-  Spatial<S> added;
-  for (int at = body; at > 0; at = system.bodies[at].parent) {
-    const Vec3<S> reach = motion.bodies[body].pose.origin - motion.bodies[at].pose.origin;
-    for (int k = 0; k < system.bodies[at].speed_count; ++k) {
-      const Spatial<S> part =
-          scale(motion.accelerations[system.bodies[at].first_speed + k], motion.bodies[at].columns[k]);
-      added = added + Spatial<S>{part.angular, part.linear + cross(part.angular, reach)};
-    }
-  }
-  return motion.bodies[body].bias + added;
-}
 
 /// Linear acceleration of a point of a body, in ground.
 template <class S>
@@ -69,6 +53,31 @@ inline bool hasExpression(const std::vector<OutputSpec>& outputs) {
   return std::any_of(outputs.begin(), outputs.end(),
                      [](const OutputSpec& output) { return !output.expression.text.empty(); });
 }
+/// Whether any is what an element exerts, whose law may be an expression.
+inline bool hasForce(const std::vector<OutputSpec>& outputs) {
+  return std::any_of(outputs.begin(), outputs.end(),
+                     [](const OutputSpec& output) { return output.force_of.has_value(); });
+}
+
+/// Of a force element or constraint. `values`: with what expressions of the state may use.
+template <class S>
+S calcForceOutput(const OutputSpec& spec, const SystemNames& names, const NamedValues<S>& values,
+                  const SystemValues<S>& system, const ModelState<S>& state, const ModelMotion<S>& motion) {
+  const NamedForce& which = names.findForce(*spec.force_of);
+  Loads<S> loads = makeLoads<S>(motion.bodies.size(), state.coordinates.size(), state.states.size());
+  ForceSum<S, NamedValues<S>> sum(motion.bodies, state.coordinates, motion.rates, state.states, values, loads,
+                                  &state.modes, &motion.held);
+  const Exerted<S> exerted = which.constraint >= 0 ? calcConstraintForce(system, motion, which.constraint)
+                                                   : calcElementForce(system.elements, which, sum);
+  return spec.component ? getComponent(exerted.force, exerted.moment, *spec.component) : exerted.along;
+}
+
+template <class S>
+S calcReactionOutput(const OutputSpec& spec, const SystemNames& names, const SystemValues<S>& system,
+                     const ModelMotion<S>& motion) {
+  const Spatial<S> reaction = calcReaction(system, motion, names.findJoint(spec.reaction->joint));
+  return getComponent(reaction.linear, reaction.angular, spec.reaction->component);
+}
 
 /// gain * quantity + offset. `values`: parameters, constants and what expressions of outputs may use.
 template <class S>
@@ -78,6 +87,8 @@ S calcOutput(const OutputSpec& spec, const SystemNames& names, const NamedValues
   const S quantity = spec.coordinate ? state.coordinates[names.findCoordinate(*spec.coordinate)]
                      : spec.speed    ? motion.rates[names.findCoordinate(*spec.speed)]
                      : of_body       ? calcBodySensor(spec, names, values, system, motion)
+                     : spec.reaction ? calcReactionOutput(spec, names, system, motion)
+                     : spec.force_of ? calcForceOutput(spec, names, values, system, state, motion)
                      : !spec.expression.text.empty() ? values.calc(spec.expression)
                                                      : calcStationOutput(spec, names, values, system, motion);
   return values.calc(spec.gain, 1.0) * quantity + values.calc(spec.offset, 0.0);

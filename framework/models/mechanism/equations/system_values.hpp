@@ -25,15 +25,18 @@ struct BodyValues {
   int speed_count = 0;
 };
 
-enum class ClosureKind { kPlane, kRod, kGear };
+enum class ClosureKind { kPlane, kRod, kGear, kPerpendicular };
 
 /// One condition c(q) = 0 of a constraint; those of coincident points are three planes.
 template <class S>
 struct Closure {
   ClosureKind kind = ClosureKind::kGear;
-  Station<S> from{}, to{};           ///< kPlane: a point of the plane, and the point that stays in it
-  Vec3<S> normal{};                  ///< of the plane, a unit vector in the frame of from's body
-  S length = 1.0;                    ///< of a rod
+  int constraint = -1;      ///< its place in the file
+  bool swapped = false;     ///< `from` and `to` are the file's `to` and `from`
+  Station<S> from{}, to{};  ///< kPlane: a point of the plane, and the point that stays in it
+  Vec3<S> normal{};         ///< of the plane, a unit vector in the frame of from's body
+  Vec3<S> across{};         ///< kPerpendicular: a unit vector of to's body, at right angles to `normal`
+  S length = 1.0;           ///< of a rod
   int coordinate = -1, driver = -1;  ///< kGear: coordinate = ratio * driver + offset
   S ratio = 0.0, offset = 0.0;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/experiment/model/named_forces.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
 #include "framework/models/mechanism/equations/closures.hpp"
@@ -61,10 +62,6 @@ program::Program compileClosures(const ModelSpec& model, const SystemNames& name
   return program::compile(recorder, all, {2 * n, count, 0});
 }
 
-const char* getKind(const ConstraintSpec& spec) {
-  return spec.coincident ? "coincident" : spec.rod ? "rod" : spec.point_in_plane ? "point_in_plane" : "gear";
-}
-
 std::vector<ClosureLabel> makeLabels(const ModelSpec& model, const SystemNames& names) {
   std::vector<ClosureLabel> labels;
   for (std::size_t i = 0; i < model.system.constraints.size(); ++i) {
@@ -74,8 +71,10 @@ std::vector<ClosureLabel> makeLabels(const ModelSpec& model, const SystemNames& 
     const char* unit =
         spec.gear ? getUnit(names.getCoordinates()[names.findCoordinate(spec.gear->coordinate)].traits.kind)
                   : "m";
-    const std::size_t rows = spec.coincident ? 3 : 1;
-    labels.insert(labels.end(), rows, {text, unit, spec.where});
+    const std::size_t places = spec.coincident || spec.weld || spec.pin ? 3 : 1;
+    labels.insert(labels.end(), places, {text, unit, spec.where});
+    const std::size_t directions = spec.weld ? 3 : spec.pin ? 2 : 0;
+    labels.insert(labels.end(), directions, {text, "rad", spec.where});
   }
   return labels;
 }

@@ -13,7 +13,7 @@ BodyTree::BodyTree(const SystemSpec& spec, const SystemNames& names, ModelNumber
     const SimTK::MobilizedBodyIndex parent(names.findBody(body.joint.parent));
     addMobilizer(matter_.updMobilizedBody(parent), rigid, body, numbers);
   }
-  addConstraints(matter_, spec, names, numbers);
+  constraints_ = addConstraints(matter_, spec, names, numbers);
 }
 
 void BodyTree::realize() {

@@ -39,6 +39,8 @@ class BodyTree {
     return matter_.getMobilizedBody(SimTK::MobilizedBodyIndex(index));
   }
   const std::vector<Slot>& getSlots() const { return slots_; }  ///< one per coordinate
+  /// Those of each of the file's constraints.
+  const std::vector<std::vector<SimTK::ConstraintIndex>>& getConstraints() const { return constraints_; }
   const SimTK::State& getDefaultState() const { return state_; }
 
  private:
@@ -48,6 +50,7 @@ class BodyTree {
   std::optional<SimTK::GeneralForceSubsystem> forces_;
   SimTK::State state_;
   std::vector<Slot> slots_;
+  std::vector<std::vector<SimTK::ConstraintIndex>> constraints_;
 };
 
 }  // namespace twinmap

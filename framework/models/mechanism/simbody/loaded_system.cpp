@@ -62,7 +62,8 @@ LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
       signal_rates_(context.expressions.hasSignalRates() ? signals_.size() : 0) {
   context.expressions.setNumbers(context.numbers.getValues());
   context.excitation.update(context.numbers);
-  if (for_simbody || countStates() > 0 || !context.model.system.constraints.empty()) {
+  if (for_simbody || countStates() > 0 || !context.model.system.constraints.empty() ||
+      equations::hasReaction(context.model.outputs)) {
     SimTK::GeneralForceSubsystem& subsystem = tree_.addForceSubsystem();
     SimTK::Force::Custom(subsystem, new ForceAdapter(*this, subsystem));
   }
@@ -123,6 +124,14 @@ const SystemForces& LoadedSystem::calcForces(const SimTK::State& state, double t
     forces_.on_speeds[tree_.getSlots()[i].u] = loads_.on_speeds[i];
   }
   return forces_;
+}
+
+equations::Exerted<double> LoadedSystem::calcElementForce(const NamedForce& which) {
+  equations::Loads<double> loads =
+      equations::makeLoads<double>(motions_.size(), coordinates_.size(), states_.size());
+  equations::ForceSum<double, StateExpressions> sum(motions_, coordinates_, rates_, states_,
+                                                    context_.expressions, loads);
+  return equations::calcElementForce(numbers_.elements, which, sum);
 }
 
 void LoadedSystem::nameAccelerations(const SimTK::State& state, const SimTK::Vector& udot) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "framework/models/mechanism/equations/force_sum.hpp"
+#include "framework/models/mechanism/equations/reactions.hpp"
 #include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/loops/assembly.hpp"
 #include "framework/models/mechanism/model_context.hpp"
@@ -32,7 +32,7 @@ class LoadedSystem {
  public:
   /// Builds the system for the current values of the context's numbers, with muted excitation.
   /// `for_simbody`: make the forces visible to Simbody's own integrators; where there are states of first
-  /// order they are. Throws SimulationFailure.
+  /// order, constraints or outputs of reactions they are. Throws SimulationFailure.
   LoadedSystem(SimbodyContext& context, bool for_simbody);
   LoadedSystem(const LoadedSystem&) = delete;
   LoadedSystem& operator=(const LoadedSystem&) = delete;
@@ -54,6 +54,8 @@ class LoadedSystem {
   /// nameAccelerations() comes first.
   double calcExpression(const Expression& expression) const { return context_.expressions.calc(expression); }
   void nameAccelerations(const SimTK::State& state, const SimTK::Vector& udot);
+  /// What a force element exerts.
+  equations::Exerted<double> calcElementForce(const NamedForce& which);
   SimTK::Vec3 getGravity() const {
     return SimTK::Vec3(numbers_.gravity.x, numbers_.gravity.y, numbers_.gravity.z);
   }

@@ -1,5 +1,6 @@
 #include "framework/models/mechanism/simbody/outputs.hpp"
 
+#include "framework/models/mechanism/constraint_numbers.hpp"
 #include "framework/models/mechanism/simbody/mass_properties.hpp"
 
 namespace twinmap {
@@ -11,7 +12,8 @@ Outputs::Outputs(const std::vector<OutputSpec>& outputs, const SystemNames& name
     has_expressions_ = has_expressions_ || of_expression;
     needs_accelerations_ = needs_accelerations_ || of_expression ||
                            output.kind == OutputKind::kAcceleration ||
-                           output.kind == OutputKind::kSpecificForce;
+                           output.kind == OutputKind::kSpecificForce ||
+                           output.kind == OutputKind::kReaction || output.kind == OutputKind::kForce;
     const bool position = output.kind == OutputKind::kPosition;
     const SimTK::Stage needed = output.kind == OutputKind::kCoordinate ? SimTK::Stage::Time
                                 : position                             ? SimTK::Stage::Position
@@ -37,7 +39,9 @@ void Outputs::calc(LoadedSystem& system, const SimTK::State& state, double t, do
     const bool of_acceleration =
         output.kind == OutputKind::kAcceleration || output.kind == OutputKind::kSpecificForce;
     const double quantity = of_acceleration ? calcAcceleration(output, system, state, accelerations)
-                                            : calcQuantity(output, system, state);
+                            : output.kind == OutputKind::kReaction ? calcReaction(output, system, state)
+                            : output.kind == OutputKind::kForce    ? calcForce(output, system, state)
+                                                                   : calcQuantity(output, system, state);
     values[static_cast<std::ptrdiff_t>(i) * stride] =
         output.sensor ? output.sensor->gain * quantity + output.sensor->offset : quantity;
   }
@@ -67,6 +71,59 @@ double Outputs::calcQuantity(const OutputNumbers& output, const LoadedSystem& sy
           tree.getBody(output.station.body).findStationVelocityInGround(state, toVec3(output.station.point)),
           toVec3(output.direction));
   }
+}
+
+/// In the axes of the parent.
+double Outputs::calcReaction(const OutputNumbers& output, const LoadedSystem& system,
+                             const SimTK::State& state) {
+  const BodyTree& tree = system.getTree();
+  tree.getSystem().realize(state, SimTK::Stage::Acceleration);
+  SimTK::Vector_<SimTK::SpatialVec> reactions;
+  tree.getMatter().calcMobilizerReactionForces(state, reactions);
+  const SimTK::SpatialVec& reaction = reactions[output.station.body];
+  const SimTK::MobilizedBody& parent = tree.getBody(output.station.body).getParentMobilizedBody();
+  return parent.expressGroundVectorInBodyFrame(
+      state, reaction[isMoment(*output.component) ? 0 : 1])[getAxis(*output.component)];
+}
+
+double Outputs::calcForce(const OutputNumbers& output, LoadedSystem& system, const SimTK::State& state) {
+  const equations::Exerted<double> exerted = output.force->constraint >= 0
+                                                 ? calcConstraintForce(*output.force, system, state)
+                                                 : system.calcElementForce(*output.force);
+  return output.component ? equations::getComponent(exerted.force, exerted.moment, *output.component)
+                          : exerted.along;
+}
+
+/// Of Simbody's multipliers, whose forces have the opposite sign and act at the body's origin.
+equations::Exerted<double> Outputs::calcConstraintForce(const NamedForce& force, const LoadedSystem& system,
+                                                        const SimTK::State& state) {
+  const BodyTree& tree = system.getTree();
+  SimbodyContext& context = system.getContext();
+  const SystemSpec& spec = context.model.system;
+  SimTK::SpatialVec on_to(SimTK::Vec3(0.0), SimTK::Vec3(0.0));
+  for (const SimTK::ConstraintIndex index : tree.getConstraints()[force.constraint]) {
+    SimTK::Vector_<SimTK::SpatialVec> on_bodies;
+    SimTK::Vector on_speeds;
+    tree.getMatter().getConstraint(index).getConstraintForcesAsVectors(state, on_bodies, on_speeds);
+    if (force.coordinate) {
+      const int coordinate = context.names.findCoordinate(*force.coordinate);
+      return {-on_speeds[context.names.getCoordinates()[coordinate].local], {}, {}};
+    }
+    on_to -= on_bodies[1];
+  }
+  const ConstraintNumbers one = calcConstraintNumbers(spec, context.names, context.numbers)[force.constraint];
+  const SimTK::MobilizedBody &from = tree.getBody(one.from.body), &to = tree.getBody(one.to.body);
+  const SimTK::Vec3 arm = to.expressVectorInGroundFrame(state, toVec3(one.to.point));
+  const SimTK::Vec3 place = to.findStationLocationInGround(state, toVec3(one.to.point));
+  const SimTK::Vec3 from_place = from.findStationLocationInGround(state, toVec3(one.from.point));
+  const SimTK::Vec3 direction = spec.constraints[force.constraint].rod
+                                    ? from_place - place
+                                    : from.expressVectorInGroundFrame(state, toVec3(one.normal));
+  const double length = direction.norm();
+  const SimTK::Vec3 moment = on_to[0] - SimTK::cross(arm, on_to[1]);
+  const auto to_vector = [](const SimTK::Vec3& v) { return algebra::Vec3<double>{v[0], v[1], v[2]}; };
+  return {length > 0.0 ? SimTK::dot(on_to[1], direction) / length : 0.0, to_vector(on_to[1]),
+          to_vector(moment)};
 }
 
 /// a + b x r + w x (w x r), with b and a the angular and linear acceleration of the body at its origin; of a

@@ -26,6 +26,12 @@ class Outputs {
   double calcAcceleration(const OutputNumbers& output, const LoadedSystem& system, const SimTK::State& state,
                           const SimTK::Vector_<SimTK::SpatialVec>& accelerations) const;
 
+  static double calcReaction(const OutputNumbers& output, const LoadedSystem& system,
+                             const SimTK::State& state);
+  static double calcForce(const OutputNumbers& output, LoadedSystem& system, const SimTK::State& state);
+  static equations::Exerted<double> calcConstraintForce(const NamedForce& force, const LoadedSystem& system,
+                                                        const SimTK::State& state);
+
   std::vector<OutputNumbers> outputs_;
   SimTK::Stage stage_ = SimTK::Stage::Time;
   bool needs_accelerations_ = false, has_expressions_ = false;

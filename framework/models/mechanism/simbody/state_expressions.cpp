@@ -51,6 +51,7 @@ void StateExpressions::defineNames(const ModelSpec& model, const NamedValues<dou
   for (const std::string& name : numbers.getNames()) {
     values_.define(name);
   }
+  values_.takeFunctions(numbers);
   first_coordinate_ = getCount();
   for (const BodySpec& body : model.system.bodies) {
     for (const Name& coordinate : body.joint.coordinates) {

@@ -220,7 +220,7 @@ TEST(Loops, OfAPointInAPlaneSlideDownIt) {
       body("bead", "0.7", kOrigin, kOrigin, joint(JointType::kTranslation, {"x", "y", "z"})));
   ConstraintSpec plane;
   plane.point_in_plane = PointInPlaneSpec{
-      station("bead", kOrigin), PlaneSpec{station("ground", ex3("0", "0", "0.2")), ex3("3", "0", "4")}};
+      station("bead", kOrigin), PlaneSpec{name("ground"), ex3("0", "0", "0.2"), ex3("3", "0", "4")}};
   model.system.constraints = {plane};
   model.initial.coordinates = {value("x", "0")};  // held; z follows
   model.outputs = {coordinateOutput("x"), coordinateOutput("z")};

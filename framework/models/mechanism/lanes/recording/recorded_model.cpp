@@ -166,7 +166,9 @@ class ModelRecorder {
     const ModelState<Symbol> state = system_.closures.empty() ? given : project(given, kOutputRounds);
     const ModelMotion<Symbol> motion = calcMotion(state);
     const NamedValues<Symbol> named =
-        equations::hasExpression(model_.outputs) ? nameAll(state, motion) : values_;
+        equations::hasExpression(model_.outputs) || equations::hasForce(model_.outputs)
+            ? nameAll(state, motion)
+            : values_;
     Symbols quantities;
     for (const OutputSpec& output : model_.outputs) {
       quantities.push_back(equations::calcOutput(output, names_, named, system_, state, motion));

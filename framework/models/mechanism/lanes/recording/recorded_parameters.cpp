@@ -1,5 +1,6 @@
 #include "framework/models/mechanism/lanes/recording/recorded_parameters.hpp"
 
+#include "framework/experiment/expression/curve.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -13,6 +14,7 @@ NamedValues<program::Symbol> recordParameters(const ModelSpec& model, program::R
   for (const ConstantSpec& constant : model.constants) {
     names.set(constant.name.text, names.calc(constant.value));
   }
+  defineCurves(model.system.curves, names);
   return names;
 }
 
