@@ -1,5 +1,6 @@
 #include "framework/simulation/model_numbers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -9,9 +10,11 @@
 namespace twinmap {
 namespace {
 
+constexpr const char* kMustBeFinite = "must be finite";
+
 void requireFinite(const Quantity& quantity, double value, const SourceLocation& where) {
   if (!std::isfinite(value)) {
-    throwUnusable(quantity, value, "must be finite", where);
+    throwUnusable(quantity, value, kMustBeFinite, where);
   }
 }
 
@@ -28,9 +31,11 @@ void throwUnusable(const Quantity& quantity, double value, const std::string& ru
 ModelNumbers::ModelNumbers(const ModelSpec& model) : model_(model), sampled_(collectSampled(model)) {
   for (const ParameterSpec& parameter : sampled_) {
     defineName(values_, parameter.name);
+    varying_.push_back(1);
   }
   for (const ConstantSpec& constant : model.constants) {
     constants_.push_back(values_.bind(constant.value));
+    varying_.push_back(isVarying(constants_.back()) ? 1 : 0);
     defineName(values_, constant.name);
   }
   defineCurves(model.system.curves, values_);
@@ -40,25 +45,65 @@ void ModelNumbers::update(const Eigen::Ref<const Eigen::VectorXd>& point) {
   const int count = static_cast<int>(sampled_.size());
   for (int i = 0; i < count; ++i) {
     const ParameterSpec& parameter = sampled_[i];
-    requireFinite({"parameter", parameter.name.text.c_str(), parameter.unit.c_str()}, point[i],
-                  parameter.name.where);
+    if (!std::isfinite(point[i])) {
+      throwUnusable({"parameter", parameter.name.text.c_str(), parameter.unit.c_str()}, point[i],
+                    kMustBeFinite, parameter.name.where);
+    }
     values_.upd(i) = point[i];
   }
-  for (std::size_t i = 0; i < constants_.size(); ++i) {
+  for (int i = 0; i < static_cast<int>(constants_.size()); ++i) {
+    if (knows_constants_ && varying_[count + i] == 0) {
+      continue;
+    }
     const ConstantSpec& constant = model_.constants[i];
     const double value = values_.calc(constants_[i]);
     requireFinite({"constant", constant.name.text.c_str(), constant.unit.c_str()}, value,
                   constant.value.where);
-    values_.upd(count + static_cast<int>(i)) = value;
+    values_.upd(count + i) = value;
   }
+  knows_constants_ = true;
 }
 
-double ModelNumbers::calc(const Expression& expression, const Quantity& quantity) {
+const BoundExpression& ModelNumbers::bind(const Expression& expression) {
   auto found = bound_.find(&expression);
   if (found == bound_.end()) {
     found = bound_.emplace(&expression, values_.bind(expression)).first;
   }
-  const double value = values_.calc(found->second);
+  return found->second;
+}
+
+bool ModelNumbers::isVarying(const BoundExpression& expression) const {
+  return std::any_of(expression.nodes.begin(), expression.nodes.end(), [this](const auto& node) {
+    return node.operation == program::Operation::kParameter && varying_[node.operands[0]] != 0;
+  });
+}
+
+bool ModelNumbers::varies(const Expression& expression) {
+  return isVarying(bind(expression));
+}
+
+bool ModelNumbers::isFinite(const Expression& expression) {
+  return std::isfinite(values_.calc(bind(expression)));
+}
+
+std::vector<const Expression*> ModelNumbers::listUsed(const std::function<void()>& use) {
+  used_.clear();
+  lists_used_ = true;
+  try {
+    use();
+  } catch (...) {
+    lists_used_ = false;
+    throw;
+  }
+  lists_used_ = false;
+  return std::move(used_);
+}
+
+double ModelNumbers::calc(const Expression& expression, const Quantity& quantity) {
+  if (lists_used_) {
+    used_.push_back(&expression);
+  }
+  const double value = values_.calc(bind(expression));
   requireFinite(quantity, value, expression.where);
   return value;
 }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -25,6 +26,13 @@ class ModelNumbers {
 
   const NamedValues<double>& getValues() const { return values_; }
 
+  /// Whether a parameter changes the value of an expression of the model.
+  bool varies(const Expression& expression);
+  /// Whether the value of an expression of the model is finite.
+  bool isFinite(const Expression& expression);
+  /// The expressions whose values `use` asks for.
+  std::vector<const Expression*> listUsed(const std::function<void()>& use);
+
   /// The value of an expression of the model, checked to be finite (else SimulationFailure). Throws
   /// ExperimentError at the first use of an expression that is wrong. About 30 ns for a literal.
   double calc(const Expression& expression, const Quantity& quantity);
@@ -32,10 +40,17 @@ class ModelNumbers {
   std::array<double, 3> calc3(const Expression3& expressions, const Quantity& quantity);
 
  private:
+  const BoundExpression& bind(const Expression& expression);
+  bool isVarying(const BoundExpression& expression) const;
+
   const ModelSpec& model_;
   std::vector<ParameterSpec> sampled_;
   NamedValues<double> values_;
   std::vector<BoundExpression> constants_;
+  std::vector<char> varying_;  ///< by place of the values: parameters, and constants that follow from them
+  std::vector<const Expression*> used_;
+  bool lists_used_ = false;
+  bool knows_constants_ = false;  ///< those that do not vary
   std::unordered_map<const Expression*, BoundExpression> bound_;
 };
 

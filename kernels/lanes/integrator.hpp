@@ -12,7 +12,8 @@ namespace twinmap::lanes {
 /// The engine of this processor that is fastest for so many samples. All engines give the same bits: many
 /// lanes hide the latency of instructions and share their decoding, but cost as much when they are empty.
 const StepEngine& chooseEngine(int samples);
-/// The same for a problem whose programs may be too large for many lanes (Interpreter::countReachable).
+/// The same for a problem that may be too large for many lanes: for the places of its programs
+/// (Interpreter::countReachable), or for the first cache.
 const StepEngine& chooseEngine(int samples, const Problem& problem);
 /// All engines of this processor.
 std::vector<const StepEngine*> getEngines();

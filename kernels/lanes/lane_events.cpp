@@ -48,7 +48,7 @@ unsigned LanePacket::findEvents() {
 
 /// At each lane's fraction of its step.
 void LanePacket::calcGuardsWithin() {
-  engine_.interpolate(arrays_);
+  engine_.interpolateAll(arrays_);
   for (int lane = 0; lane < count_; ++lane) {
     event_times_[lane] = arrays_.time[lane] + arrays_.fraction[lane] * arrays_.step[lane];
   }

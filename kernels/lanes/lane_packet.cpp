@@ -9,7 +9,7 @@
 namespace twinmap::lanes {
 namespace {
 
-constexpr int kSingleRows = 13;  // of StepArrays
+constexpr int kSingleRows = 14;  // of StepArrays
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -76,8 +76,9 @@ void LanePacket::placeArrays(const Problem& problem) {
     a.slopes[j] = takeRows(rows);
   }
   a.interpolated = takeRows(rows);
-  for (double** row : {&a.fraction, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
-                       &a.proposed, &a.growth, &a.phase_end, &a.next_output, &a.steps, &a.next_check}) {
+  for (double** row :
+       {&a.wanted, &a.fraction, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
+        &a.proposed, &a.growth, &a.phase_end, &a.next_output, &a.steps, &a.next_check}) {
     *row = takeRows(1);
   }
   a.absolute_tolerance = absolute_.data();

@@ -50,7 +50,7 @@ class LanePacket {
   void doEvents();
   void settle(unsigned lanes);
   void findEventSlopes(int lane);
-  void keepOutputs(unsigned lanes);
+  void keepOutputs(int lane);
   void advance(int lane);
   void beginSteps(int lane);
   void endPhase(int lane);

@@ -27,7 +27,7 @@ void LanePacket::doRound() {
   if (events_) {
     attention |= findEvents();
   }
-  keepOutputs(attention);
+  forEach(attention, [this](int lane) { keepOutputs(lane); });
   if (projection_) {
     // the slopes stay those of the state before, which is as near as the step's error: they enter the next
     // step as if that had begun with this error
@@ -78,27 +78,22 @@ void LanePacket::jump(int lane) {
   }
 }
 
-/// The states at the output times that accepted steps have passed; one time of each lane in a pass.
-void LanePacket::keepOutputs(unsigned lanes) {
+/// The states of a lane at the output times that its accepted step has passed.
+void LanePacket::keepOutputs(int lane) {
   const StepArrays& a = arrays_;
-  const auto isPending = [&a](int lane) {
-    return a.accepted[lane] != 0.0 && a.next_output[lane] < a.end[lane];
-  };
-  for (;;) {
-    unsigned pending = 0;
-    forEach(lanes, [&](int lane) {
-      pending |= isPending(lane) ? 1u << lane : 0u;
-      a.fraction[lane] = isPending(lane) ? (a.next_output[lane] - a.time[lane]) / a.step[lane] : 0.0;
-    });
-    if (pending == 0) {
-      return;
+  const Lane& l = lanes_[lane];
+  const int count = static_cast<int>(l.kept.size());
+  while (a.accepted[lane] != 0.0 && a.next_output[lane] < a.end[lane]) {
+    int last = l.next_output;
+    for (int i = 0; i < engine_.times; ++i) {
+      const bool passed = last < count && l.kept[last].time < a.end[lane];
+      a.wanted[i] = passed ? l.kept[last].time : a.time[lane];
+      last += passed ? 1 : 0;
     }
-    engine_.interpolate(a);
-    forEach(pending, [this](int lane) {
-      const Lane& l = lanes_[lane];
-      outputs_.keep(lane, l.kept[l.next_output].place, l.phase, arrays_.interpolated);
-      setNextOutput(lane, lanes_[lane].next_output + 1);
-    });
+    engine_.interpolate(lane, a);
+    outputs_.keep(lane, &l.kept[l.next_output], last - l.next_output, l.phase,
+                  {a.interpolated, engine_.times});
+    setNextOutput(lane, last);
   }
 }
 
@@ -156,7 +151,7 @@ void LanePacket::endPhase(int lane) {
     return;
   }
   for (; l.next_output < static_cast<int>(l.kept.size()); ++l.next_output) {
-    outputs_.keep(lane, l.kept[l.next_output].place, l.phase, arrays_.state);
+    outputs_.keep(lane, &l.kept[l.next_output], 1, l.phase, {arrays_.state + lane, count_});
   }
   outputs_.write(lane, l.sample);
   l.mode = Mode::kIdle;

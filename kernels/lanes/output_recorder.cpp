@@ -16,7 +16,13 @@ OutputRecorder::OutputRecorder(const Problem& problem, const std::vector<double>
       derivative_count_(problem.output_count * static_cast<int>(problem.directions.size())),
       interpreter_(problem.output, engine),
       states_((1 + delay_count_) * times.size() * rows_ * lanes_),
-      phases_((1 + delay_count_) * times.size() * lanes_) {}
+      phases_((1 + delay_count_) * times.size() * lanes_) {
+  for (const int slot : problem.output.outputs) {
+    const int state = slot - problem.output.getStateSlot(0);
+    copied_.push_back(state >= 0 && state < rows_ ? state : -1);
+  }
+  all_copied_ = std::all_of(copied_.begin(), copied_.end(), [](int state) { return state >= 0; });
+}
 
 std::vector<OutputRecorder::KeptTime> OutputRecorder::listKeptTimes(const Sample& sample) const {
   const int count = static_cast<int>(times_.size());
@@ -35,19 +41,38 @@ double OutputRecorder::calcTime(const Sample& sample, int delay, int time) const
   return delay < 0 ? times_[time] : std::max(times_[time] - sample.delays[delay], sample.phases[0].begin);
 }
 
-void OutputRecorder::keep(int lane, int place, int phase, const double* states) {
-  const std::size_t count = (1 + delay_count_) * times_.size();
-  phases_[lane * count + place] = phase;
-  double* target = states_.data() + lane * rows_ * count + place;
-  for (int row = 0; row < rows_; ++row, target += count) {
-    *target = states[row * lanes_ + lane];
+void OutputRecorder::keep(int lane, const KeptTime* kept, int count, int phase, const States& states) {
+  const std::size_t places = (1 + delay_count_) * times_.size();
+  for (int i = 0; i < count; ++i) {
+    phases_[lane * places + kept[i].place] = phase;
+  }
+  double* target = states_.data() + lane * rows_ * places;
+  for (int row = 0; row < rows_; ++row, target += places) {
+    for (int i = 0; i < count; ++i) {
+      target[kept[i].place] = states.values[row * states.stride + i];
+    }
   }
 }
 
 void OutputRecorder::write(int lane, const Sample& sample) {
+  copyStates(lane, sample);
+  if (all_copied_) {
+    return;
+  }
   setSample(sample);
   for (int delay = -1; delay < delay_count_; ++delay) {
     writeDelayed(lane, delay, sample);
+  }
+}
+
+void OutputRecorder::copyStates(int lane, const Sample& sample) {
+  const std::size_t count = times_.size(), places = (1 + delay_count_) * count;
+  for (int i = 0; i < value_count_ + derivative_count_; ++i) {
+    if (const int state = copied_[i]; state >= 0) {
+      const int delay = output_delays_.empty() ? -1 : output_delays_[i % value_count_];
+      const double* const source = states_.data() + (lane * rows_ + state) * places + (1 + delay) * count;
+      std::copy_n(source, count, getTarget(sample, i));
+    }
   }
 }
 
@@ -59,14 +84,9 @@ void OutputRecorder::writeDelayed(int lane, int delay, const Sample& sample) {
     interpreter_.calcPhase();
     interpreter_.calcOutputs();
     const int here = std::min(lanes_, count - first);
-    for (int i = 0; i < value_count_; ++i) {
-      if (has(i, delay)) {
-        std::copy_n(interpreter_.getOutput(i), here, sample.outputs + i * count + first);
-      }
-    }
-    for (int i = 0; i < derivative_count_; ++i) {
-      if (has(i % value_count_, delay)) {
-        std::copy_n(interpreter_.getOutput(value_count_ + i), here, sample.derivatives + i * count + first);
+    for (int i = 0; i < value_count_ + derivative_count_; ++i) {
+      if (copied_[i] < 0 && has(i % value_count_, delay)) {
+        std::copy_n(interpreter_.getOutput(i), here, getTarget(sample, i) + first);
       }
     }
   }

@@ -11,13 +11,15 @@ struct StepArrays {
   const double* const* pivot_values;  ///< and each pivot
   double* stage_state;                ///< rows; what the program is evaluated at
   double* stage_time;
-  double* state;                     ///< rows; at the begin of the step
-  double* slopes[8];                 ///< rows each; [1] to [7], k in Dormand and Prince's pair
-  double* interpolated;              ///< rows; the solution within the finished step
-  double* fraction;                  ///< 0 ... 1 of the step, where it is interpolated
+  double* state;      ///< rows; at the begin of the step
+  double* slopes[8];  ///< rows each; [1] to [7], k in Dormand and Prince's pair
+  double*
+      interpolated;  ///< rows of StepEngine::times, or of all lanes; the solution within the finished step
+  double* wanted;    ///< as many times of that step
   const double* absolute_tolerance;  ///< one number a row
   const double* relative_tolerance;  ///< one number a row
   // of the step in work
+  double* fraction;        ///< 0 ... 1 of it, where all lanes are interpolated
   double* time;            ///< its begin
   double* step;            ///< its size
   double* end;             ///< its end; exactly the phase's for the last of a phase
@@ -39,6 +41,7 @@ constexpr double kSmallestStep = 0x1p-49, kSmallestTime = 1e-9;
 /// Arithmetic of Dormand and Prince's 5(4) pair on all lanes at a time, for one number of lanes.
 struct StepEngine {
   const program::Engine& program;
+  int times;  ///< that are interpolated together
   /// Chooses each lane's step: as proposed, but half of the way to the phase's end at most, or all of it.
   void (*plan)(const StepArrays& arrays);
   /// The state and time at which stage 2 ... 7 is to be evaluated, from the derivatives that stage - 1 left.
@@ -48,12 +51,14 @@ struct StepEngine {
   /// had size 0, ends its phase, passes an output time, met a pivot that is not positive, or is to be checked
   /// against limits.
   unsigned (*finish)(const StepArrays& arrays);
-  /// The state at each lane's `fraction`, before accept().
-  void (*interpolate)(const StepArrays& arrays);
+  /// The states of one lane at each of the times `wanted`, before accept().
+  void (*interpolate)(int lane, const StepArrays& arrays);
+  /// The state of each lane at its `fraction` of the step, before accept().
+  void (*interpolateAll)(const StepArrays& arrays);
   /// Takes the new time, state and slopes in lanes where `accepted` is not 0.
   void (*accept)(const StepArrays& arrays);
 };
 
-extern const StepEngine kSteps4, kSteps8, kSteps8Of4, kSteps16;
+extern const StepEngine kSteps4, kSteps8, kSteps8Of4, kSteps16, kSteps16Of4;
 
 }  // namespace twinmap::lanes

@@ -39,10 +39,11 @@ constexpr double kLargestGrowth = 10.0, kSmallestFactor = 0.1;
 
 template <typename P, int chains>
 class StepLoops {
-  static constexpr int kWidth = program::PacketTraits<P>::kWidth;
-  static constexpr int kLanes = chains * kWidth;
+  static constexpr int kLanes = chains * program::PacketTraits<P>::kWidth;
 
  public:
+  static constexpr int kWidth = program::PacketTraits<P>::kWidth;
+
   static void prepareStage(int stage, const StepArrays& a) {
     switch (stage) {
       case 2:
@@ -95,7 +96,23 @@ class StepLoops {
     }
   }
 
-  static void interpolate(const StepArrays& a) {
+  static void interpolate(int lane, const StepArrays& a) {
+    P weights[8];
+    calcDenseWeights((load(a.wanted) - broadcast(a.time[lane])) / broadcast(a.step[lane]), weights);
+    for (const int j : kDenseStages) {
+      weights[j] *= broadcast(a.step[lane]);
+    }
+    for (int row = 0; row < a.rows; ++row) {
+      const int at = row * kLanes + lane;
+      P sum = broadcast(a.state[at]);
+      for (const int j : kDenseStages) {
+        sum = program::fma(broadcast(a.slopes[j][at]), weights[j], sum);
+      }
+      store(a.interpolated + row * kWidth, sum);
+    }
+  }
+
+  static void interpolateAll(const StepArrays& a) {
     for (int k = 0; k < kLanes; k += kWidth) {
       P weights[8];
       calcDenseWeights(load(a.fraction + k), weights);

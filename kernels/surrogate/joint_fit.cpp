@@ -24,6 +24,20 @@ bool invertFactor(MatrixXd& matrix) {
   return true;
 }
 
+/// `inverse`: L^-1. `of_terms` (q x rows): its products with itself are what the trend takes from K^-1.
+void leaveOutAll(const MatrixXd& inverse, const MatrixXd& of_terms, const SlopeData& slopes, JointFit& fit) {
+  const Index n = fit.residual.rows();
+  for (Index i = 0; i < n; ++i) {
+    const std::vector<Index> rows = listJointRows(i, n, slopes);
+    const Index below = inverse.rows() - i;
+    const MatrixXd columns = inverse(Eigen::all, rows).bottomRows(below);
+    const MatrixXd taken = of_terms(Eigen::all, rows);
+    leaveOut(i, rows, columns.transpose() * columns - taken.transpose() * taken, fit);
+  }
+}
+
+}  // namespace
+
 MatrixXd stackValues(const MatrixXd& values, const SlopeData& slopes, const VectorXd& length_scales) {
   const Index n = values.rows(), m = slopes.countPoints();
   MatrixXd stacked(n + slopes.variables * m, values.cols());
@@ -34,32 +48,20 @@ MatrixXd stackValues(const MatrixXd& values, const SlopeData& slopes, const Vect
   return stacked;
 }
 
-/// Rows of a point: its value and its slopes.
-std::vector<Index> listRows(Index point, Index points, Index slope_points, Index variables) {
+std::vector<Index> listJointRows(Index point, Index points, const SlopeData& slopes) {
   std::vector<Index> rows{point};
-  for (Index v = 0; v < variables && point < slope_points; ++v) {
-    rows.push_back(points + v * slope_points + point);
+  for (Index v = 0; v < slopes.variables && point < slopes.countPoints(); ++v) {
+    rows.push_back(points + v * slopes.countPoints() + point);
   }
   return rows;
 }
 
-/// `inverse`: L^-1. `of_terms` (q x rows): its products with itself are what the trend takes from K^-1.
-void leaveOut(const MatrixXd& inverse, const MatrixXd& of_terms, const SlopeData& slopes, JointFit& fit) {
-  const Index n = fit.residual.rows();
-  for (Index i = 0; i < n; ++i) {
-    const std::vector<Index> rows = listRows(i, n, slopes.countPoints(), slopes.variables);
-    const Index below = inverse.rows() - i;
-    const MatrixXd columns = inverse(Eigen::all, rows).bottomRows(below);
-    const MatrixXd taken = of_terms(Eigen::all, rows);
-    const MatrixXd block = columns.transpose() * columns - taken.transpose() * taken;
-    const VectorXd first =
-        linalg::solvePositiveDefinite(block, VectorXd::Unit(static_cast<Index>(rows.size()), 0));
-    fit.variance(i) = first(0);
-    fit.residual.row(i) = first.transpose() * fit.weights(rows, Eigen::all);
-  }
+void leaveOut(Index point, const std::vector<Index>& rows, const MatrixXd& block, JointFit& fit) {
+  const VectorXd first =
+      linalg::solvePositiveDefinite(block, VectorXd::Unit(static_cast<Index>(rows.size()), 0));
+  fit.variance(point) = first(0);
+  fit.residual.row(point) = first.transpose() * fit.weights(rows, Eigen::all);
 }
-
-}  // namespace
 
 bool fitJointly(const SharedStructure& structure, const SharedHyperparameters& hyperparameters,
                 const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes, JointFit& fit) {
@@ -83,7 +85,7 @@ bool fitJointly(const SharedStructure& structure, const SharedHyperparameters& h
   fit.residual.resize(points.cols(), values.cols());
   fit.variance.resize(points.cols());
   const MatrixXd solved = whiten_transposed * terms;
-  leaveOut(inverse, linalg::solveLower(of_terms.lower, solved.transpose()), slopes, fit);
+  leaveOutAll(inverse, linalg::solveLower(of_terms.lower, solved.transpose()), slopes, fit);
   return fit.variance.minCoeff() > 0.0 && fit.residual.allFinite();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "kernels/surrogate/slope_covariance.hpp"
 
@@ -22,6 +23,17 @@ struct JointFit {
 bool fitJointly(const SharedStructure& structure, const SharedHyperparameters& hyperparameters,
                 const Eigen::MatrixXd& points, const Eigen::MatrixXd& values, const SlopeData& slopes,
                 JointFit& fit);
+
+/// Values, then slopes times length scales: n + u m x r.
+Eigen::MatrixXd stackValues(const Eigen::MatrixXd& values, const SlopeData& slopes,
+                            const Eigen::VectorXd& length_scales);
+
+/// Rows of one of n points: that of its value and, where they are known, of its slopes.
+std::vector<Eigen::Index> listJointRows(Eigen::Index point, Eigen::Index points, const SlopeData& slopes);
+
+/// Residual and variance of a point left out, from its rows and its block P_ii; weights are there already.
+void leaveOut(Eigen::Index point, const std::vector<Eigen::Index>& rows, const Eigen::MatrixXd& block,
+              JointFit& fit);
 
 /// The mean over functions and points left out of -log N(e_ij; 0, 1 + t_j variance_i), without
 /// log(2 pi) / 2, t_j the mean over i of e_ij^2 / variance_i: as LeftOutDensity, times n r.

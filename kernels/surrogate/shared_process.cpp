@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "kernels/linalg/decompositions.hpp"
-#include "kernels/surrogate/joint_fit.hpp"
 
 namespace twinmap::gp {
 
@@ -94,23 +93,42 @@ SharedProcessParts SharedProcess::getParts() const {
           left_out_.amplitude, left_out_ratio_};
 }
 
+namespace {
+
+void requireSlopes(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes) {
+  if (slopes.countPoints() < 1 || slopes.countPoints() > points.cols() || slopes.variables > points.rows() ||
+      slopes.values.cols() != values.cols()) {
+    throw std::invalid_argument("SharedProcess: slopes of all functions, at some of the points");
+  }
+}
+
+JointFit fitOrThrow(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes,
+                    const SharedStructure& structure, const SharedHyperparameters& hyperparameters) {
+  requireSlopes(points, values, slopes);
+  JointFit fit;
+  if (!fitJointly(structure, hyperparameters, points, values, slopes, fit)) {
+    throw std::runtime_error("a surrogate's joint covariance of values and slopes is not positive definite");
+  }
+  return fit;
+}
+
+}  // namespace
+
 SharedProcess::SharedProcess(const MatrixXd& points, const MatrixXd& values, const SlopeData& slopes,
+                             SharedStructure structure, SharedHyperparameters hyperparameters)
+    : SharedProcess(points, slopes, fitOrThrow(points, values, slopes, structure, hyperparameters), structure,
+                    hyperparameters) {}
+
+SharedProcess::SharedProcess(const MatrixXd& points, const SlopeData& slopes, JointFit fit,
                              SharedStructure structure, SharedHyperparameters hyperparameters)
     : structure_(structure),
       hyperparameters_(std::move(hyperparameters)),
       slope_points_(slopes.countPoints()),
-      slope_variables_(slopes.variables) {
-  requireSizes(points, values);
-  if (slope_points_ < 1 || slope_points_ > points.cols() || slope_variables_ > points.rows() ||
-      slopes.values.cols() != values.cols()) {
-    throw std::invalid_argument("SharedProcess: slopes of all functions, at some of the points");
-  }
-  JointFit fit;
-  if (!fitJointly(structure_, hyperparameters_, points, values, slopes, fit)) {
-    throw std::runtime_error("a surrogate's joint covariance of values and slopes is not positive definite");
-  }
-  coefficients_ = std::move(fit.coefficients);
-  weights_ = std::move(fit.weights);
+      slope_variables_(slopes.variables),
+      weights_(std::move(fit.weights)),
+      coefficients_(std::move(fit.coefficients)) {
+  requireSizes(points, fit.residual);
+  requireSlopes(points, fit.residual, slopes);
   scaled_points_ = points.transpose() * hyperparameters_.length_scales.cwiseInverse().asDiagonal();
   leaveOutLocally(points, fit.residual);
   updateLeftOutRatio();

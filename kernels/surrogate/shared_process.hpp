@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "kernels/linalg/packed_lower.hpp"
+#include "kernels/surrogate/joint_fit.hpp"
 #include "kernels/surrogate/left_out_density.hpp"
 #include "kernels/surrogate/slope_covariance.hpp"
 
@@ -56,6 +57,9 @@ class SharedProcess {
   SharedProcessParts getParts() const;
   /// Learns from slopes as well. Cost: 2 / 3 (n + u m)^3 flops.
   SharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values, const SlopeData& slopes,
+                SharedStructure structure, SharedHyperparameters hyperparameters);
+  /// The same from a fit of them (fitJointly, JointPrecision).
+  SharedProcess(const Eigen::MatrixXd& points, const SlopeData& slopes, JointFit fit,
                 SharedStructure structure, SharedHyperparameters hyperparameters);
 
   Eigen::Index getFunctionCount() const { return weights_.cols(); }

@@ -1,5 +1,7 @@
 #include <cmath>
+#include <cstring>
 #include <functional>
+#include <map>
 #include <numeric>
 
 #include "framework/base/hdf5/hdf5_file.hpp"
@@ -42,6 +44,55 @@ std::string readVariableLengthText(const Hdf5Handle& attribute, const Hdf5Handle
   return copy;
 }
 
+// HDF5 would copy an image twice, a tenth of the time of an inference. Of a file that is only read it may
+// have the bytes where they are, until it closes the file.
+
+/// The images of open files, by their address. With the library locked.
+std::map<const void*, std::string>& updImages() {
+  static std::map<const void*, std::string> images;
+  return images;
+}
+
+void* takeImage(size_t, H5FD_file_image_op_t, void* image) {
+  return image;
+}
+void* copyImage(void* target, const void* source, size_t size, H5FD_file_image_op_t, void*) {
+  return target == source ? target : std::memcpy(target, source, size);
+}
+void* refuseToResizeImage(void*, size_t, H5FD_file_image_op_t, void*) {
+  return nullptr;
+}
+herr_t freeImage(void* image, H5FD_file_image_op_t operation, void*) {
+  if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE) {
+    updImages().erase(image);
+  }
+  return 0;
+}
+void* shareImage(void* image) {
+  return image;
+}
+herr_t releaseImage(void*) {
+  return 0;
+}
+
+/// Opens bytes of a file that has this name; below 0 where it cannot.
+hid_t openImage(const std::string& name, std::string bytes) {
+  void* const image = bytes.data();
+  const std::size_t size = bytes.size();
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "HDF5 property list");
+  H5FD_file_image_callbacks_t callbacks{takeImage,    copyImage, refuseToResizeImage, freeImage, shareImage,
+                                        releaseImage, image};
+  updImages().emplace(image, std::move(bytes));
+  const bool ready = H5Pset_fapl_core(access.get(), kImageStep, 0) >= 0 &&
+                     H5Pset_file_image_callbacks(access.get(), &callbacks) >= 0 &&
+                     H5Pset_file_image(access.get(), image, size) >= 0;
+  const hid_t file = ready ? H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.get()) : -1;
+  if (file < 0) {
+    updImages().erase(image);
+  }
+  return file;
+}
+
 std::string trimZeros(const std::string& padded) {
   return padded.substr(0, padded.find('\0'));
 }
@@ -49,15 +100,9 @@ std::string trimZeros(const std::string& padded) {
 }  // namespace
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& path, Hdf5Seal seal) : path_(path.string()) {
-  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "HDF5 property list");
-  std::string name = path_;
-  if (seal == Hdf5Seal::kDigest) {
-    name += "/image";  // HDF5 refuses an image under the name of a file that exists
-    std::string bytes = readSealedFile(path);
-    H5Pset_fapl_core(access.get(), kImageStep, 0);
-    requireHdf5(H5Pset_file_image(access.get(), bytes.data(), bytes.size()), path_ + ": cannot be opened");
-  }
-  file_ = H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.get());
+  // HDF5 refuses an image under the name of a file that exists
+  file_ = seal == Hdf5Seal::kDigest ? openImage(path_ + "/image", readSealedFile(path))
+                                    : H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0) {
     throw std::runtime_error(path_ + ": cannot be opened as an HDF5 file");
   }

@@ -58,6 +58,20 @@ double calcMeanLogDensity(std::vector<Mixture> mixtures, const VectorXd& stddev_
   return sum / static_cast<double>(truth.cols());
 }
 
+/// A surrogate for the box of `whole`, fitted to some samples.
+Surrogate makeSimilar(const Surrogate& whole, ForwardSurrogate forward, const ForwardSamples& samples) {
+  Surrogate surrogate;
+  surrogate.forward = std::make_shared<const ForwardSurrogate>(std::move(forward));
+  surrogate.center = whole.center;
+  surrogate.half_width = whole.half_width;
+  surrogate.parameters = whole.parameters;
+  surrogate.unknown = whole.unknown;
+  surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
+  surrogate.validation.limit_scale =
+      calcLimitScale(*surrogate.forward, samples, whole.unknown).head(whole.parameters);
+  return surrogate;
+}
+
 }  // namespace
 
 ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vector<Index>& kept) {
@@ -73,29 +87,27 @@ ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vecto
 
 Surrogate fitSimilar(const Surrogate& whole, const ForwardSamples& samples, const ForwardChoices& choices,
                      const TrainingControl& control) {
-  Surrogate surrogate;
-  surrogate.forward =
-      std::make_shared<const ForwardSurrogate>(fitForward(samples, choices, control).surrogate);
-  surrogate.center = whole.center;
-  surrogate.half_width = whole.half_width;
-  surrogate.parameters = whole.parameters;
-  surrogate.unknown = whole.unknown;
-  surrogate.validation.stddev_scale = VectorXd::Ones(whole.parameters);
-  surrogate.validation.limit_scale =
-      calcLimitScale(*surrogate.forward, samples, whole.unknown).head(whole.parameters);
-  return surrogate;
+  return makeSimilar(whole, fitForward(samples, choices, control).surrogate, samples);
+}
+
+std::vector<std::vector<Index>> listFolds(Index simulations) {
+  std::vector<std::vector<Index>> folds;
+  for (Index fold = 0; fold < kFolds; ++fold) {
+    folds.push_back(listKept(simulations, kFolds, fold));
+  }
+  return folds;
 }
 
 HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
-                      const ForwardChoices& choices, const TrainingControl& control) {
+                      std::vector<ForwardSurrogate> folds, const TrainingControl& control) {
   const Index n = samples.points.cols(), draws = countDraws(samples), p = whole.parameters;
   const Index known = samples.points.rows() - whole.unknown;
   HeldOut held_out;
   held_out.predictions = {MatrixXd(p, n * draws), MatrixXd(p, n * draws), {}};
   held_out.limit_stddev.resize(p, n * draws);
   for (Index fold = 0; fold < kFolds; ++fold) {
-    const Surrogate fitted =
-        fitSimilar(whole, selectSimulations(forward, listKept(n, kFolds, fold)), choices, control);
+    const Surrogate fitted = makeSimilar(whole, std::move(folds[static_cast<std::size_t>(fold)]),
+                                         selectSimulations(forward, listKept(n, kFolds, fold)));
     const std::vector<Index> left_out = listLeftOut(n, kFolds, fold);
     const MatrixXd inputs = samples.points(Eigen::all, left_out).bottomRows(known);
     for (Index draw = 0; draw < draws; ++draw) {

@@ -21,10 +21,13 @@ ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vecto
 Surrogate fitSimilar(const Surrogate& whole, const ForwardSamples& samples, const ForwardChoices& choices,
                      const TrainingControl& control);
 
-/// Leaves out every fifth simulation in turn, fits everything anew from the choices made for all, and infers
-/// the measured features of those left out. `whole` gives box and sizes.
+/// The simulations that each of five folds keeps: all but every fifth.
+std::vector<std::vector<Eigen::Index>> listFolds(Eigen::Index simulations);
+
+/// Infers the measured features of the simulations that each fold leaves out by its surrogate, fitted to the
+/// others by the choices made for all (ForwardFit::folds). `whole` gives box and sizes.
 HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
-                      const ForwardChoices& choices, const TrainingControl& control);
+                      std::vector<ForwardSurrogate> folds, const TrainingControl& control);
 
 /// What follows for the standard deviations; limit_scale is left to others.
 SurrogateValidation validate(const HeldOut& held_out);

@@ -141,12 +141,39 @@ std::vector<WindowChoice> chooseWindows(const ForwardSamples& samples, const Whi
   return windows;
 }
 
-std::vector<WindowFit> fitAnew(const ForwardSamples& samples, const WhitenedSamples& whitened,
-                               const TrainingControl& control, ForwardChoices& choices) {
+/// Columns of the whitened samples that each fold keeps.
+std::vector<WhitenedFold> makeFolds(const ForwardSamples& samples, const WhitenedSamples& whitened,
+                                    const std::vector<std::vector<Index>>& folds) {
+  const std::vector<Index> order = orderSimulations(samples);
+  std::vector<WhitenedFold> made;
+  for (const std::vector<Index>& kept : folds) {
+    std::vector<Index> columns;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      if (std::binary_search(kept.begin(), kept.end(), order[i])) {
+        columns.push_back(static_cast<Index>(i));
+      }
+    }
+    made.push_back({columns, selectWhitened(whitened, columns)});
+  }
+  return made;
+}
+
+/// Windows of the whole, then of each fold.
+std::vector<std::vector<WindowFit>> fitAnew(const ForwardSamples& samples, const WhitenedSamples& whitened,
+                                            const std::vector<WhitenedFold>& folds,
+                                            const TrainingControl& control, ForwardChoices& choices) {
   const std::vector<WindowChoice> chosen = chooseWindows(samples, whitened, control);
-  std::vector<WindowFit> windows(chosen.size());
-  runTasks(control.threads, chosen.size(),
-           [&](std::size_t w) { windows[w] = fitWindow(chosen[w], whitened, control.stop); });
+  std::vector<std::vector<WindowFit>> windows(1 + folds.size());
+  for (std::vector<WindowFit>& of_fold : windows) {
+    of_fold.resize(chosen.size());
+  }
+  runTasks(control.threads, chosen.size(), [&](std::size_t w) {
+    WindowFits fits = fitWindow(chosen[w], whitened, folds, control.stop);
+    windows[0][w] = std::move(fits.whole);
+    for (std::size_t fold = 0; fold < folds.size(); ++fold) {
+      windows[1 + fold][w] = std::move(fits.folds[fold]);
+    }
+  });
   for (const WindowChoice& window : chosen) {
     choices.windows.push_back(window.rows);
   }
@@ -165,20 +192,33 @@ std::vector<WindowFit> refit(const ForwardChoices& similar, const WhitenedSample
 }  // namespace
 
 ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& similar,
-                      const TrainingControl& control) {
+                      const TrainingControl& control, const std::vector<std::vector<Index>>& folds) {
   const NoiseWhitener noise(samples.noise_covariance);
   ForwardFit fit;
   fit.surrogate.center = samples.clean_features.rowwise().mean();
   const WhitenedSamples whitened = whiten(samples, fit.surrogate.center, noise);
   fit.surrogate.points = whitened.points;
   fit.choices.windows = similar.windows;
-  std::vector<WindowFit> windows = similar.windows.empty() ? fitAnew(samples, whitened, control, fit.choices)
-                                                           : refit(similar, whitened, control);
+  const std::vector<WhitenedFold> parts = makeFolds(samples, whitened, folds);
+  std::vector<std::vector<WindowFit>> windows;
+  if (similar.windows.empty()) {
+    windows = fitAnew(samples, whitened, parts, control, fit.choices);
+  } else {
+    windows.push_back(refit(similar, whitened, control));
+  }
   gp::throwIfStopped(control.stop);
-  for (const WindowFit& window : windows) {
+  for (const WindowFit& window : windows.front()) {
     fit.choices.processes.push_back(window.choice);
   }
-  assemble(windows, chooseScores(windows, samples.points.cols()), noise, fit.surrogate);
+  assemble(windows.front(), chooseScores(windows.front(), samples.points.cols()), noise, fit.surrogate);
+  for (std::size_t fold = 0; fold + 1 < windows.size(); ++fold) {
+    const std::vector<Index>& kept = folds[fold];
+    ForwardSurrogate part;
+    part.center = samples.clean_features(Eigen::all, kept).rowwise().mean();
+    part.points = parts[fold].samples.points;
+    assemble(windows[1 + fold], chooseScores(windows[1 + fold], part.points.cols()), noise, part);
+    fit.folds.push_back(std::move(part));
+  }
   return fit;
 }
 

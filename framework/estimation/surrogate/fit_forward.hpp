@@ -21,6 +21,7 @@ struct ForwardChoices {
 struct ForwardFit {
   ForwardSurrogate surrogate;
   ForwardChoices choices;
+  std::vector<ForwardSurrogate> folds;  ///< fitted without some of the simulations, by the same choices
 };
 
 /// Fits processes to the principal components of each window of whitened features (makeFeatureWindows, parted
@@ -31,10 +32,13 @@ struct ForwardFit {
 /// correlation of the errors is that of the points left out, shrunk towards independence by at least 0.2
 /// (Schaefer and Strimmer 2005). Where slopes are given, each window learns from them as well if that
 /// predicts simulations left out better (gp::chooseWithSlopes). `similar`: choices for nearly the same
-/// samples, to start from; empty to search anew. Throws std::invalid_argument for a feature without noise and
-/// for too few simulations, gp::Stopped. Cost: a window some 60 evaluations of gp::LeftOutDensity on 300
-/// points, 8 from similar choices; then 2 n^3 flops, with slopes 2 / 3 (n + u m)^3.
+/// samples, to start from; empty to search anew. `folds`: the simulations that each fold of a
+/// cross-validation keeps (rising), where all is searched anew; they share factorisations with the whole.
+/// Throws std::invalid_argument for a feature without noise and for too few simulations, gp::Stopped. Cost: a
+/// window some 60 evaluations of gp::LeftOutDensity on 300 points, 8 from similar choices; then 2 n^3 flops,
+/// with slopes (n + u m)^3 for the whole with all its folds.
 ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& similar,
-                      const TrainingControl& control);
+                      const TrainingControl& control,
+                      const std::vector<std::vector<Eigen::Index>>& folds = {});
 
 }  // namespace twinmap

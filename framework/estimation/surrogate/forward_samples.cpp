@@ -56,4 +56,27 @@ WhitenedSamples whiten(const ForwardSamples& samples, const Eigen::VectorXd& cen
   return whitened;
 }
 
+std::vector<Index> orderSimulations(const ForwardSamples& samples) {
+  Index with_slopes = 0;
+  return orderBySlopes(samples, with_slopes);
+}
+
+WhitenedSamples selectWhitened(const WhitenedSamples& whitened, const std::vector<Index>& kept) {
+  const Index m = whitened.slopes.countPoints(), u = whitened.slopes.variables;
+  WhitenedSamples selected{whitened.points(Eigen::all, kept), whitened.features(Eigen::all, kept), {}};
+  selected.features.colwise() -= selected.features.rowwise().mean().eval();
+  const std::vector<Index> with_slopes(kept.begin(), std::lower_bound(kept.begin(), kept.end(), m));
+  if (with_slopes.empty()) {
+    return selected;
+  }
+  const auto count = static_cast<Index>(with_slopes.size());
+  selected.slopes.variables = u;
+  selected.slopes.values.resize(u * count, whitened.features.rows());
+  for (Index v = 0; v < u; ++v) {
+    selected.slopes.values.middleRows(v * count, count) =
+        whitened.slopes.values.middleRows(v * m, m)(with_slopes, Eigen::all);
+  }
+  return selected;
+}
+
 }  // namespace twinmap

@@ -34,4 +34,11 @@ struct WhitenedSamples {
 WhitenedSamples whiten(const ForwardSamples& samples, const Eigen::VectorXd& center,
                        const NoiseWhitener& noise);
 
+/// The order in which whiten() takes the simulations.
+std::vector<Eigen::Index> orderSimulations(const ForwardSamples& samples);
+
+/// Some of the whitened samples (rising), their features from their own mean on; slopes of those that have
+/// any.
+WhitenedSamples selectWhitened(const WhitenedSamples& whitened, const std::vector<Eigen::Index>& kept);
+
 }  // namespace twinmap

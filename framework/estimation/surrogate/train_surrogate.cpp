@@ -91,9 +91,9 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   for (const MatrixXd& per_width : samples.slopes) {
     forward.slopes.push_back(0.5 * per_width);  // per half width
   }
-  ForwardFit fit = fitForward(forward, {}, control);
+  ForwardFit fit = fitForward(forward, {}, control, listFolds(forward.points.cols()));
   surrogate.forward = std::make_shared<const ForwardSurrogate>(std::move(fit.surrogate));
-  HeldOut held_out = crossValidate(surrogate, samples, forward, fit.choices, control);
+  HeldOut held_out = crossValidate(surrogate, samples, forward, std::move(fit.folds), control);
   surrogate.validation = validate(held_out);
   surrogate.validation.limit_scale =
       calcLimitScale(*surrogate.forward, forward, surrogate.unknown).head(surrogate.parameters);

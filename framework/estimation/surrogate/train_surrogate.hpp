@@ -43,8 +43,8 @@ std::string findSurrogateObstacle(const ModelSpec& model, Eigen::Index simulatio
 /// Trains a surrogate on simulations of a model, and scales its standard deviations by what a five-fold
 /// cross-validation of everything, on the measured features, finds. At most the first 2000 simulations are
 /// used. Throws std::invalid_argument for a feature without noise and for too few simulations; gp::Stopped.
-/// Cost: fitForward() for all and, from its choices, five times for four fifths; an inference for each
-/// measured column (at most 1000).
+/// Cost: fitForward() for all with five folds of four fifths; an inference for each measured column (at most
+/// 1000).
 SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples& samples,
                                  const TrainingControl& control);
 

@@ -1,11 +1,14 @@
 #include "framework/estimation/surrogate/window_fit.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "framework/data/reduction/principal_components.hpp"
 #include "kernels/gp/sparse/inducing_points.hpp"
 #include "kernels/surrogate/fit_slopes.hpp"
+#include "kernels/surrogate/joint_precision.hpp"
 
 namespace twinmap {
 namespace {
@@ -39,6 +42,29 @@ bool fitWithSlopes(const MatrixXd& points, WindowFit& window) {
   } catch (const std::runtime_error&) {
     return false;
   }
+}
+
+/// Of all samples; nothing where none of the slopes are learnt from, or there is no Cholesky factor.
+std::optional<gp::JointPrecision> factoriseWithSlopes(const MatrixXd& points, const WindowFit& window) {
+  if (!window.choice.structure.slopes) {
+    return std::nullopt;
+  }
+  std::optional<gp::JointPrecision> precision(std::in_place, window.choice.structure,
+                                              window.choice.hyperparameters, points,
+                                              window.slopes.countPoints(), window.slopes.variables);
+  return precision->isDefinite() ? std::move(precision) : std::nullopt;
+}
+
+/// Fits a window of the samples kept, whose points are given.
+bool fitByPrecision(const gp::JointPrecision& precision, const std::vector<Index>& kept,
+                    const MatrixXd& points, WindowFit& window) {
+  gp::JointFit fit;
+  if (window.slopes.countPoints() == 0 || !precision.fitPoints(kept, window.scores, window.slopes, fit)) {
+    return false;
+  }
+  window.process.emplace(points, window.slopes, std::move(fit), window.choice.structure,
+                         window.choice.hyperparameters);
+  return true;
 }
 
 void fitByChoice(const MatrixXd& points, gp::StopFlag stop, WindowFit& window) {
@@ -123,8 +149,10 @@ std::vector<WindowChoice> divideWindow(const FeatureWindow& rows, const std::vec
   return divide(chooseByValues(rows, samples, stop), infos, samples, stop);
 }
 
-WindowFit fitWindow(const WindowChoice& chosen, const WhitenedSamples& samples, gp::StopFlag stop) {
-  WindowFit window = findScores(chosen.rows, samples);
+WindowFits fitWindow(const WindowChoice& chosen, const WhitenedSamples& samples,
+                     const std::vector<WhitenedFold>& folds, gp::StopFlag stop) {
+  WindowFits fits{findScores(chosen.rows, samples), {}};
+  WindowFit& window = fits.whole;
   window.choice = chosen.by_values;
   if (window.slopes.variables > 0) {
     window.choice =
@@ -133,8 +161,22 @@ WindowFit fitWindow(const WindowChoice& chosen, const WhitenedSamples& samples, 
   if (!window.choice.structure.slopes) {
     window.choice = gp::finishOnAll(window.choice, samples.points, window.scores, stop);
   }
-  fitByChoice(samples.points, stop, window);
-  return window;
+  const std::optional<gp::JointPrecision> precision =
+      folds.empty() ? std::nullopt : factoriseWithSlopes(samples.points, window);
+  std::vector<Index> all(static_cast<std::size_t>(samples.points.cols()));
+  std::iota(all.begin(), all.end(), Index{0});
+  if (!precision || !fitByPrecision(*precision, all, samples.points, window)) {
+    fitByChoice(samples.points, stop, window);
+  }
+  for (const WhitenedFold& fold : folds) {
+    WindowFit part = findScores(chosen.rows, fold.samples);
+    part.choice = window.choice;
+    if (!precision || !fitByPrecision(*precision, fold.kept, fold.samples.points, part)) {
+      part = refitWindow(chosen.rows, window.choice, fold.samples, stop);
+    }
+    fits.folds.push_back(std::move(part));
+  }
+  return fits;
 }
 
 WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar,

@@ -35,8 +35,22 @@ struct WindowChoice {
 std::vector<WindowChoice> divideWindow(const FeatureWindow& rows, const std::vector<FeatureInfo>& infos,
                                        const WhitenedSamples& samples, gp::StopFlag stop);
 
-/// Fits a window anew, from values and slopes where that predicts better.
-WindowFit fitWindow(const WindowChoice& window, const WhitenedSamples& samples, gp::StopFlag stop);
+/// Samples of a fold of a cross-validation.
+struct WhitenedFold {
+  std::vector<Eigen::Index> kept;  ///< of the whole's whitened samples, rising
+  WhitenedSamples samples;
+};
+
+/// A window of all samples and, by the same choice, of each fold.
+struct WindowFits {
+  WindowFit whole;
+  std::vector<WindowFit> folds;
+};
+
+/// Fits a window anew, from values and slopes where that predicts better; then the folds, which share the
+/// factorisation of a joint covariance with slopes (gp::JointPrecision).
+WindowFits fitWindow(const WindowChoice& window, const WhitenedSamples& samples,
+                     const std::vector<WhitenedFold>& folds, gp::StopFlag stop);
 
 /// Fits a window by a choice made on nearly the same samples.
 WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar,

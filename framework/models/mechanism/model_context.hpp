@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "framework/models/mechanism/system_names.hpp"
 #include "framework/simulation/excitation/excitation.hpp"
 #include "framework/simulation/model_numbers.hpp"
@@ -41,5 +44,14 @@ Eigen::VectorXd calcEquilibriumPoint(ModelContext& context);
 /// Throws SimulationFailure for numbers of the current parameter set that no real system has: as building it
 /// would, and in the same order. Cost: some microseconds.
 void checkNumbers(ModelContext& context);
+
+/// One of the things that checkNumbers() checks.
+struct NumberCheck {
+  bool only_finite;  ///< it asks for nothing but that the values of its expressions are finite
+  std::function<void(ModelContext&)> check;
+};
+
+/// In the order of checkNumbers(). `model` must outlive them.
+std::vector<NumberCheck> listNumberChecks(const ModelSpec& model);
 
 }  // namespace twinmap

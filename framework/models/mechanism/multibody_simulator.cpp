@@ -173,8 +173,6 @@ class MultibodySimulator::Impl {
  private:
   void makeLanes() {
     if (shared_->lanes) {
-      context_.numbers.update(calcBoxCenter(collectSampled(shared_->model)));
-      checkNumbers(context_);
       lanes_.emplace(*shared_->lanes, context_, SampleTask{shared_->layout, shared_->box_center});
     }
   }

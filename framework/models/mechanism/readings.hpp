@@ -25,9 +25,12 @@ inline bool isClipped(const Bounds& range, double reading) {
 /// Quantities to what sensors of limited range show of them.
 inline void clipReadings(const ModelSpec& model, const ResponseLayout& layout,
                          Eigen::Ref<Eigen::VectorXd> response) {
-  for (Eigen::Index row = 0; row < response.size(); ++row) {
-    if (const Bounds* range = findRange(model, layout, row)) {
-      response[row] = std::clamp(response[row], range->lower, range->upper);
+  const Eigen::Index times = layout.times.size();
+  for (Eigen::Index output = 0; output < layout.getOutputCount() && times > 0; ++output) {
+    if (const Bounds* range = findRange(model, layout, output * times)) {
+      for (double& reading : response.segment(output * times, times)) {
+        reading = std::clamp(reading, range->lower, range->upper);
+      }
     }
   }
 }

@@ -285,27 +285,42 @@ Eigen::VectorXd calcEquilibriumPoint(ModelContext& context) {
   return point;
 }
 
+std::vector<NumberCheck> listNumberChecks(const ModelSpec& model) {
+  std::vector<NumberCheck> checks;
+  const auto add = [&checks](bool only_finite, std::function<void(ModelContext&)> check) {
+    checks.push_back({only_finite, std::move(check)});
+  };
+  for (const BodySpec& body : model.system.bodies) {
+    add(false, [&body](ModelContext& context) { calcMassNumbers(body, context.numbers); });
+    add(false, [&body](ModelContext& context) { calcJointNumbers(body, context.numbers); });
+  }
+  for (const CurveSpec& curve : model.system.curves) {
+    add(true, [&curve](ModelContext& context) {
+      for (const Expression& value : curve.values) {
+        context.numbers.calc(value, {"curve '" + curve.name.text + "'", "values", curve.unit.c_str()});
+      }
+    });
+  }
+  add(true,
+      [](ModelContext& context) { calcLoadNumbers(context.model.system, context.names, context.numbers); });
+  add(false, [](ModelContext& context) {
+    calcConstraintNumbers(context.model.system, context.names, context.numbers);
+  });
+  add(false, [](ModelContext& context) { context.excitation.update(context.numbers); });
+  for (const OutputSpec& output : model.outputs) {
+    add(false,
+        [&output](ModelContext& context) { calcOutputNumbers(output, context.names, context.numbers); });
+  }
+  add(false, [](ModelContext& context) { checkSampledNumbers(context.model, context.numbers); });
+  add(false, [](ModelContext& context) { checkSwitchNumbers(context.model.system, context.numbers); });
+  add(true, [](ModelContext& context) { calcInitialValues(context); });
+  return checks;
+}
+
 void checkNumbers(ModelContext& context) {
-  ModelNumbers& numbers = context.numbers;
-  const SystemSpec& system = context.model.system;
-  for (const BodySpec& body : system.bodies) {
-    calcMassNumbers(body, numbers);
-    calcJointNumbers(body, numbers);
+  for (const NumberCheck& one : listNumberChecks(context.model)) {
+    one.check(context);
   }
-  for (const CurveSpec& curve : system.curves) {
-    for (const Expression& value : curve.values) {
-      numbers.calc(value, {"curve '" + curve.name.text + "'", "values", curve.unit.c_str()});
-    }
-  }
-  calcLoadNumbers(system, context.names, numbers);
-  calcConstraintNumbers(system, context.names, numbers);
-  context.excitation.update(numbers);
-  for (const OutputSpec& output : context.model.outputs) {
-    calcOutputNumbers(output, context.names, numbers);
-  }
-  checkSampledNumbers(context.model, numbers);
-  checkSwitchNumbers(system, numbers);
-  calcInitialValues(context);
 }
 
 }  // namespace twinmap

@@ -9,6 +9,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/resolve_defaults.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/sweep/case_cost.hpp"
 #include "framework/study/sweep/probe.hpp"
@@ -49,10 +50,21 @@ double calcCaseDisk(const ExperimentSpec& e) {
          kPredictionRow * countParameters(e) * e.design.test.samples + kReport;
 }
 
+/// What a case takes after its samples are simulated, in the order of a run.
+std::vector<StageTime> calcStages(const ExperimentSpec& e, const ProbeTimes& times) {
+  const double tests = e.design.test.samples;
+  return {{"train", times.training.calcTraining(e)},
+          {"calibrate", times.calcPreparation(e)},
+          {"limit", e.evaluation.limit ? times.limit * tests : 0.0},
+          {"refine", times.refinement * tests},  // 0 where nothing is refined
+          {"test samples", times.evaluation * tests},
+          {"rest", times.overhead}};
+}
+
 double calcCaseSeconds(const ExperimentSpec& e, const ProbeTimes& times) {
-  const double limit = e.evaluation.limit ? times.limit * e.design.test.samples : 0.0;
-  const double refinement = times.refinement * e.design.test.samples;  // 0 where nothing is refined
-  return times.training.calcTraining(e) + times.calcPreparation(e) + limit + refinement + times.overhead;
+  const std::vector<StageTime> stages = calcStages(e, times);
+  return std::accumulate(stages.begin(), stages.end(), 0.0,
+                         [](double sum, const StageTime& stage) { return sum + stage.seconds; });
 }
 
 /// The time of a team that takes the longest first, and no less than the longest.
@@ -160,6 +172,28 @@ const ExperimentSpec& findLargest(const std::vector<SweepCase>& cases) {
       ->experiment;
 }
 
+std::string describeSeconds(double seconds) {
+  constexpr double kMinute = 60.0, kHour = 3600.0;
+  if (seconds < 2.0 * kMinute) {
+    return fmt::format("{:.2g} s", seconds);
+  }
+  return seconds < 2.0 * kHour ? fmt::format("{:.2g} min", seconds / kMinute)
+                               : fmt::format("{:.2g} h", seconds / kHour);
+}
+
+/// The time where the automatic choice ends with its second step.
+void noteFewSamples(const ExperimentSurvey& survey, const PlanOptions& options, SweepPlan& plan) {
+  constexpr int kFirst = 100, kSecond = 200;
+  const ExperimentSpec& experiment = survey.cases.front().experiment;
+  const SampleCount& samples = experiment.design.train.samples;
+  if (survey.cases.size() == 1 && samples.automatic && samples.number > kSecond) {
+    const double seconds = survey.times.training.calcTraining(takeTrainingSamples(experiment, kFirst)) +
+                           calcCaseSeconds(takeTrainingSamples(experiment, kSecond), survey.times);
+    plan.warnings.push_back(fmt::format("where {} training samples are enough the cases take about {}",
+                                        kSecond, describeSeconds(seconds / options.threads)));
+  }
+}
+
 void addTimes(const ExperimentSurvey& survey, const PlanOptions& options, SweepPlan& plan) {
   const ProbeTimes& times = survey.times;
   plan.no_times = times.failure;
@@ -168,16 +202,25 @@ void addTimes(const ExperimentSurvey& survey, const PlanOptions& options, SweepP
         (plan.stored.samples.missing * times.simulation + plan.stored.stencils.missing * times.stencil) /
         options.threads;
     plan.cases_s = calcCasesSeconds(survey.cases, findTodo(survey), times, options);
+    plan.largest = calcStages(findLargest(survey.cases), times);
+    noteFewSamples(survey, options, plan);
   }
 }
 
-std::string describeSeconds(double seconds) {
-  constexpr double kMinute = 60.0, kHour = 3600.0;
-  if (seconds < 2.0 * kMinute) {
-    return fmt::format("{:.2g} s", seconds);
+/// Those of a hundredth of the whole or more.
+std::string describeStages(const std::vector<StageTime>& stages) {
+  constexpr double kShown = 0.01;
+  double sum = 0.0;
+  for (const StageTime& stage : stages) {
+    sum += stage.seconds;
   }
-  return seconds < 2.0 * kHour ? fmt::format("{:.2g} min", seconds / kMinute)
-                               : fmt::format("{:.2g} h", seconds / kHour);
+  std::string text;
+  for (const StageTime& stage : stages) {
+    if (stage.seconds >= kShown * sum) {
+      text += (text.empty() ? "" : ", ") + stage.stage + " " + describeSeconds(stage.seconds);
+    }
+  }
+  return text;
 }
 
 std::string describeBytes(double bytes) {
@@ -236,6 +279,8 @@ std::string describePlan(const SweepPlan& plan, const PlanOptions& options) {
     text += fmt::format("time:        about {}: {} to simulate, {} for the cases, on {} threads\n",
                         describeSeconds(plan.simulate_s + plan.cases_s), describeSeconds(plan.simulate_s),
                         describeSeconds(plan.cases_s), options.threads);
+    text += fmt::format("             {} on one thread: {}\n",
+                        plan.cases > 1 ? "the largest case" : "the case", describeStages(plan.largest));
   }
   text += fmt::format("memory:      about {}, of {} allowed\n", describeBytes(plan.memory),
                       describeBytes(options.memory)) +

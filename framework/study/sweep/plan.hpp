@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/log/stage_notes.hpp"
 #include "framework/experiment/sweep/sweep_cases.hpp"
 #include "framework/study/sweep/probe.hpp"
 #include "framework/study/sweep/stored_counts.hpp"
@@ -39,11 +40,12 @@ struct SweepPlan {
   int cases = 0;
   int complete = 0;
   StoredCounts stored;
-  double simulate_s = 0.0;  ///< wall time of what is missing
-  double cases_s = 0.0;     ///< wall time of the cases after that
-  double memory = 0.0;      ///< bytes at the peak
-  double disk = 0.0;        ///< bytes to be written
-  std::string no_times;     ///< why times are not known; empty if they are
+  double simulate_s = 0.0;         ///< wall time of what is missing
+  double cases_s = 0.0;            ///< wall time of the cases after that
+  std::vector<StageTime> largest;  ///< of the case with the most work, on one thread
+  double memory = 0.0;             ///< bytes at the peak
+  double disk = 0.0;               ///< bytes to be written
+  std::string no_times;            ///< why times are not known; empty if they are
   std::vector<std::string> warnings;
 };
 

@@ -17,7 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kTrainSamples = 60, kTestSamples = 20, kFewEvaluations = 5;
-constexpr int kMoreTrainSamples = 200;  // of a surrogate, whose time grows with the cube from there on
+constexpr int kMoreTestSamples = 400;
+constexpr double kCheapSimulation = 2e-3;  // s; those of more test samples do not make a plan long then
+constexpr double kMostColumns = 1000.0;    // of a probe: more would take longer than many runs
+constexpr int kMoreTrainSamples = 200;     // of a surrogate, whose time grows with the cube from there on
 
 struct TimedRun {
   RunSummary summary;
@@ -113,51 +116,113 @@ double countEvaluationsOnAllDraws(const ExperimentSpec& experiment, ExperimentSp
          static_cast<double>(experiment.model.parameters.size());
 }
 
-/// Of processes from features to parameters.
-TrainingTime measureProcesses(const ExperimentSpec& experiment, const ExperimentSpec& small,
-                              const TimedRun& run, double most_samples, const fs::path& folder) {
+/// A run with the experiment's own settings, which all times are taken from but how training grows.
+struct ProbedRun {
+  ExperimentSpec experiment;
+  TimedRun run;
+};
+
+/// Of processes from features to parameters: how an evaluation grows, and how many `sample` took.
+TrainingTime measureProcesses(const ExperimentSpec& small, const TimedRun& few, const ProbedRun& sample,
+                              double most_samples, const fs::path& folder) {
   TrainingTime time;
   time.measured = measureEvaluations(small, most_samples, folder);
   time.evaluations = 1.0;
-  time.evaluations = run.getTraining() / time.calcTraining(small);
-  time.evaluations_all = countEvaluationsOnAllDraws(experiment, small, folder);
+  time.evaluations = few.getTraining() / time.calcTraining(small);
+  time.evaluations_all = countEvaluationsOnAllDraws(sample.experiment, small, folder);
+  const double factor = sample.run.getTraining() / time.calcTraining(sample.experiment);
+  time.evaluations *= factor;
+  time.evaluations_all *= factor;
   return time;
 }
 
 /// Of a surrogate: whole trainings.
-TrainingTime measureSurrogate(ExperimentSpec small, const TimedRun& run, const fs::path& folder) {
-  small = takeTrainingSamples(std::move(small), kMoreTrainSamples);
-  const TimedRun more = timeRun(makeBare(small), "more", folder);
+TrainingTime measureSurrogate(const TimedRun& few, const ProbedRun& sample) {
   TrainingTime time;
-  time.measured = {{double(kTrainSamples), run.getTraining()},
-                   {double(kMoreTrainSamples), more.getTraining()}};
+  time.measured = {{double(kTrainSamples), few.getTraining()}};
+  const double samples = sample.experiment.design.train.samples;
+  if (samples > kTrainSamples) {
+    time.measured.push_back({samples, sample.run.getTraining()});
+  }
   return time;
+}
+
+double getSimulation(const TimedRun& run) {
+  return run.getStage("simulate ") + run.getStage("compute parameter sensitivities");
+}
+
+/// All but what grows with the training samples.
+double getRest(const TimedRun& run) {
+  return run.seconds - getSimulation(run) - run.getTraining() -
+         run.getStage("calibrate the goodness-of-fit test");
+}
+
+/// What a test sample takes, where it has been seen for few of them, from the difference that many make.
+void measureTestSamples(const ExperimentSpec& experiment, const ExperimentSpec& small, const TimedRun& few,
+                        const fs::path& folder, ProbeTimes& times) {
+  if (experiment.design.test.samples <= kMoreTestSamples || times.simulation > kCheapSimulation) {
+    return;
+  }
+  constexpr double kMore = kMoreTestSamples - kTestSamples;
+  ExperimentSpec bare = makeBare(small);
+  bare.design.test.samples = kMoreTestSamples;
+  const TimedRun many = timeRun(bare, "many", folder / "many");
+  times.simulation = std::max(getSimulation(many) - getSimulation(few), 0.0) / kMore;
+  times.overhead += times.evaluation * kTestSamples;
+  times.evaluation = std::max(getRest(many) - getRest(few), 0.0) / kMore;
+  times.overhead = std::max(times.overhead - times.evaluation * kTestSamples, 0.0);
+}
+
+/// With as many training samples as asked for, up to 200 where they are simulated in a moment: what refines
+/// an estimate, and how often a posterior is sampled instead, depends on how good the map is.
+ProbedRun runSample(const ExperimentSpec& experiment, const ExperimentSpec& small, const TimedRun& few,
+                    const fs::path& folder) {
+  constexpr double kMoment = 5.0;  // s
+  const double of_one = getSimulation(few) / (kTrainSamples + kTestSamples);
+  const int wanted = std::clamp<int>(experiment.design.train.samples, kTrainSamples, kMoreTrainSamples);
+  ExperimentSpec sample = of_one * wanted < kMoment ? takeTrainingSamples(small, wanted) : small;
+  const int draws = experiment.noise.replicates.value_or(1);
+  sample.noise.replicates = wanted * draws <= kMostColumns ? draws : 1;
+  TimedRun run = timeRun(sample, "sample", folder);
+  return {std::move(sample), std::move(run)};
+}
+
+/// All but those of training.
+ProbeTimes takeTimes(const ProbedRun& sample, double simulated) {
+  const TimedRun& run = sample.run;
+  const bool has_map = !sample.experiment.inverse_map.isNone();
+  const double simulating = getSimulation(run), limit = run.getStage("information limit");
+  const double stencils = run.getStage("finite differences at ");
+  const double refining = run.getStage("refine ") + (has_map ? 0.0 : run.getStage("exact posterior"));
+  const double preparing = run.getStage("calibrate the goodness-of-fit test");
+  const double inferring = run.getStage("infer the test samples");
+  ProbeTimes times;
+  times.simulation = simulating / simulated;
+  times.limit = limit / kTestSamples;
+  times.stencil = stencils / std::max<double>(listDerivativePoints(sample.experiment).cols(), 1.0);
+  times.refinement = refining / kTestSamples;
+  times.preparation =
+      preparing / (double(sample.experiment.design.train.samples) * countReferences(sample.experiment));
+  times.evaluation = inferring / kTestSamples;
+  times.overhead = std::max(
+      run.seconds - simulating - stencils - limit - refining - inferring - run.getTraining() - preparing,
+      0.0);
+  return times;
 }
 
 ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const TemporaryFolder folder;
   const ExperimentSpec small = makeSmall(experiment);
-  const TimedRun run = timeRun(small, "small", folder.getPath());
-  const bool has_map = !experiment.inverse_map.isNone();
-  ProbeTimes times;
-  const double simulating = run.getStage("simulate ") + run.getStage("compute parameter sensitivities");
-  const double limit = run.getStage("information limit");
-  times.simulation = simulating / ((has_map ? kTrainSamples : 0) + kTestSamples);
-  const double stencils = run.getStage("finite differences at ");
-  times.limit = limit / kTestSamples;
-  times.stencil = stencils / std::max<double>(listDerivativePoints(small).cols(), 1.0);
-  const double refining = run.getStage("refine ") + (has_map ? 0.0 : run.getStage("exact posterior"));
-  times.refinement = refining / kTestSamples;
-  const double preparing = run.getStage("calibrate the goodness-of-fit test");
-  times.preparation = preparing / (double(kTrainSamples) * countReferences(small));
-  times.overhead =
-      std::max(run.seconds - simulating - stencils - limit - refining - run.getTraining() - preparing, 0.0);
-  if (!has_map) {
-    return times;
+  if (experiment.inverse_map.isNone()) {
+    return takeTimes({small, timeRun(small, "sample", folder.getPath())}, kTestSamples);
   }
+  const TimedRun few = timeRun(makeBare(small), "few", folder.getPath() / "few");
+  const ProbedRun sample = runSample(experiment, small, few, folder.getPath());
+  ProbeTimes times = takeTimes(sample, double(sample.experiment.design.train.samples) + kTestSamples);
+  measureTestSamples(experiment, small, few, folder.getPath(), times);
   times.training = experiment.inverse_map.findGp() != nullptr
-                       ? measureProcesses(experiment, small, run, most_samples, folder.getPath())
-                       : measureSurrogate(small, run, folder.getPath());
+                       ? measureProcesses(small, few, sample, most_samples, folder.getPath())
+                       : measureSurrogate(few, sample);
   return times;
 }
 

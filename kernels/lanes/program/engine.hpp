@@ -30,7 +30,8 @@ struct Engine {
 };
 
 /// Registers of 4 (AVX2 and fused multiply-add, or none) and 8 doubles (AVX-512). Each does its arithmetic in
-/// `lanes` / 4 or / 8 independent chains, which hide each other's latency.
-extern const Engine kEngine4, kEngine8, kEngine8Of4, kEngine16;
+/// `lanes` / 4 or / 8 independent chains, which hide each other's latency and share what an instruction and a
+/// run cost.
+extern const Engine kEngine4, kEngine8, kEngine8Of4, kEngine16, kEngine16Of4;
 
 }  // namespace twinmap::program

@@ -11,5 +11,6 @@ bool isSupported() {
 
 const Engine kEngine4{4, isSupported, InstructionLoops<Packet4, 1>::run};
 const Engine kEngine8Of4{8, isSupported, InstructionLoops<Packet4, 2>::run};
+const Engine kEngine16Of4{16, isSupported, InstructionLoops<Packet4, 4>::run};
 
 }  // namespace twinmap::program

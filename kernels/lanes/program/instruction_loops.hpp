@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstring>
+
 #include "kernels/lanes/program/engine.hpp"
 #include "kernels/lanes/program/exponential.hpp"
 #include "kernels/lanes/program/trigonometric.hpp"
@@ -12,10 +14,29 @@ class InstructionLoops {
  public:
   static constexpr int kLanes = chains * PacketTraits<P>::kWidth;
 
+  /// Nearly all runs are of sums and products: they are carried out here, without a call.
   static void run(const PlacedRun* run, const PlacedRun* end, const PlacedInstruction* next, double* slots) {
     for (; run != end; ++run) {
       const PlacedInstruction* const last = next + run->count;
-      runOne(run->operation, next, last, slots);
+      switch (run->operation) {
+        case Operation::kAdd:
+          binary(next, last, slots, [](P a, P b) { return a + b; });
+          break;
+        case Operation::kSubtract:
+          binary(next, last, slots, [](P a, P b) { return a - b; });
+          break;
+        case Operation::kMultiply:
+          binary(next, last, slots, [](P a, P b) { return a * b; });
+          break;
+#define TWINMAP_FUSED(kind, value)                                   \
+  case Operation::k##kind:                                           \
+    ternary(next, last, slots, [](P a, P b, P c) { return value; }); \
+    break;
+          TWINMAP_FUSED_OPERATIONS(TWINMAP_FUSED)
+#undef TWINMAP_FUSED
+        default:
+          runRare(run->operation, next, last, slots);
+      }
       next = last;
     }
   }
@@ -23,11 +44,27 @@ class InstructionLoops {
  private:
   using I = PlacedInstruction;
 
+  /// The slots of an instruction; its four places are read at once.
+  struct Slots {
+    Slots(const I* i, double* slots) : base(reinterpret_cast<char*>(slots)) {
+      static_assert(sizeof *i == sizeof places);
+      std::memcpy(&places, i, sizeof places);
+    }
+    /// `which`: 0 target, 1 to 3 operands
+    double* operator[](int which) const {
+      constexpr std::uint64_t kBytes = kPlace * sizeof(double);
+      return reinterpret_cast<double*>(base + kBytes * (places >> (16 * which) & 0xffff));
+    }
+    char* base;
+    std::uint64_t places;
+  };
+
   template <typename Function>
   static void unary(const I* i, const I* end, double* slots, const Function& function) {
     for (; i != end; ++i) {
+      const Slots s(i, slots);
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        store<P>(at(slots, i->target) + k, function(load<P>(at(slots, i->a) + k)));
+        store<P>(s[0] + k, function(load<P>(s[1] + k)));
       }
     }
   }
@@ -35,9 +72,9 @@ class InstructionLoops {
   template <typename Function>
   static void binary(const I* i, const I* end, double* slots, const Function& function) {
     for (; i != end; ++i) {
+      const Slots s(i, slots);
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        store<P>(at(slots, i->target) + k,
-                 function(load<P>(at(slots, i->a) + k), load<P>(at(slots, i->b) + k)));
+        store<P>(s[0] + k, function(load<P>(s[1] + k), load<P>(s[2] + k)));
       }
     }
   }
@@ -45,28 +82,30 @@ class InstructionLoops {
   template <typename Function>
   static void ternary(const I* i, const I* end, double* slots, const Function& function) {
     for (; i != end; ++i) {
+      const Slots s(i, slots);
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        store<P>(at(slots, i->target) + k,
-                 function(load<P>(at(slots, i->a) + k), load<P>(at(slots, i->b) + k),
-                          load<P>(at(slots, i->c) + k)));
+        store<P>(s[0] + k, function(load<P>(s[1] + k), load<P>(s[2] + k), load<P>(s[3] + k)));
       }
     }
   }
 
   static void sineCosine(const I* i, const I* end, double* slots) {
     for (; i != end; ++i) {
+      const Slots s(i, slots);
       for (int k = 0; k < kLanes; k += PacketTraits<P>::kWidth) {
-        const SineCosine<P> value = calcSineCosine(load<P>(at(slots, i->a) + k));
-        store<P>(at(slots, i->target) + k, value.sine);
-        store<P>(at(slots, i->c) + k, value.cosine);
+        const SineCosine<P> value = calcSineCosine(load<P>(s[1] + k));
+        store<P>(s[0] + k, value.sine);
+        store<P>(s[3] + k, value.cosine);
       }
     }
   }
 
-  static double* at(double* slots, int place) { return slots + kPlace * place; }
-  static P truth(Bits<P> condition) { return select<P>(condition, broadcast<P>(1.0), P{}); }
+  static P truth(Bits<P> condition) {
+    return select<P>(condition, broadcast<P>(1.0), P{});
+  }
 
-  static void runOne(Operation operation, const I* i, const I* end, double* slots) {
+  __attribute__((noinline)) static void runRare(Operation operation, const I* i, const I* end,
+                                                double* slots) {
     switch (operation) {
 #define TWINMAP_UNARY(kind, function, rule, value, slope) \
   case Operation::k##kind:                                \
@@ -77,17 +116,12 @@ class InstructionLoops {
 #define TWINMAP_TERNARY(kind, function, rule, value, tangent) \
   case Operation::k##kind:                                    \
     return ternary(i, end, slots, [](P a, P b, P c) { return value; });
-#define TWINMAP_FUSED(kind, value) \
-  case Operation::k##kind:         \
-    return ternary(i, end, slots, [](P a, P b, P c) { return value; });
       TWINMAP_UNARY_OPERATIONS(TWINMAP_UNARY)
       TWINMAP_BINARY_OPERATIONS(TWINMAP_BINARY)
       TWINMAP_TERNARY_FUNCTIONS(TWINMAP_TERNARY)
-      TWINMAP_FUSED_OPERATIONS(TWINMAP_FUSED)
 #undef TWINMAP_UNARY
 #undef TWINMAP_BINARY
 #undef TWINMAP_TERNARY
-#undef TWINMAP_FUSED
       case Operation::kSinCos:
         return sineCosine(i, end, slots);
       default:

@@ -7,7 +7,7 @@
 
 namespace twinmap::program {
 std::vector<const Engine*> getEngines() {
-  std::vector<const Engine*> engines{&kEngine4, &kEngine8, &kEngine8Of4, &kEngine16};
+  std::vector<const Engine*> engines{&kEngine4, &kEngine8, &kEngine8Of4, &kEngine16, &kEngine16Of4};
   engines.erase(
       std::remove_if(engines.begin(), engines.end(), [](const Engine* e) { return !e->isSupported(); }),
       engines.end());

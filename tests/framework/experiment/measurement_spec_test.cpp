@@ -28,6 +28,16 @@ TEST(UnitConversion, ConvertsToSi) {
   EXPECT_THROW(calcUnitConversion("furlongish", "m", {}), ExperimentError);
 }
 
+TEST(UnitConversion, KnowsAWholeTurnOfAnglesAlone) {
+  EXPECT_DOUBLE_EQ(*findWholeTurn("deg"), 360.0);
+  EXPECT_DOUBLE_EQ(*findWholeTurn("rad"), 2.0 * 3.141592653589793);
+  for (const char* unit : {"m", "m/s", "m/s2", "m/s^2", "rad/s", "rad/s2", "rad/s^2", "N", "N m", "Nm", "V",
+                           "A", "s", "Hz", "mm", "kg"}) {
+    EXPECT_FALSE(findWholeTurn(unit)) << unit;
+    EXPECT_THROW(calcUnitConversion("rad", unit, {}), ExperimentError) << unit;
+  }
+}
+
 TEST(MeasurementSpec, IsReadAndWritten) {
   const ExperimentSpec experiment = loadExperiment(
       kTable1, {"measurement={time: 't [ms]', start: 0.25, columns: {y: 'enc1 [mm]', theta: enc2}}"});

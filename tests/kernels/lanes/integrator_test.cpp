@@ -305,7 +305,7 @@ TEST(Lanes, LargeProblemsHaveFewerLanes) {
       EXPECT_LE(engine.lanes, chooseEngine(samples).program.lanes);
     }
   }
-  problem.derivative.slot_count = 1000;
+  problem.derivative.slot_count = 100;
   EXPECT_EQ(&chooseEngine(100, problem), &chooseEngine(100));
 }
 

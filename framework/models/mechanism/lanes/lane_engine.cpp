@@ -10,7 +10,7 @@ void LaneEngine::simulate(const Eigen::Ref<const MatrixXd>& parameters, Eigen::R
   if (!runner_) {
     runner_.emplace(programs_.getValues(), task_, context_.model);
   }
-  for (const Index i : keepRetried(runner_->run(context_, parameters, responses, nullptr, statuses))) {
+  for (const Index i : keepRetried(runner_->run(checks_, parameters, responses, nullptr, statuses))) {
     updStiffRetry().simulate(parameters.col(i), responses.col(i), statuses[i]);
   }
 }
@@ -23,7 +23,7 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
   }
   const Index p = parameters.rows();
   for (const Index i :
-       keepRetried(derivative_runner_->run(context_, parameters, responses, &derivatives, statuses))) {
+       keepRetried(derivative_runner_->run(checks_, parameters, responses, &derivatives, statuses))) {
     updStiffRetry().simulateWithDerivatives(parameters.col(i), responses.col(i),
                                             derivatives.middleCols(i * p, p), statuses[i]);
   }

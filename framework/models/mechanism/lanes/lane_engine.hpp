@@ -14,9 +14,9 @@ namespace twinmap {
 /// safe; one for each thread.
 class LaneEngine {
  public:
-  /// All but `task` must outlive the engine.
+  /// All but `task` must outlive the engine. Throws as NumberChecks does.
   LaneEngine(LanePrograms& programs, ModelContext& context, const SampleTask& task)
-      : programs_(programs), context_(context), task_(task) {}
+      : programs_(programs), context_(context), checks_(context), task_(task) {}
 
   /// As Simulator::simulate.
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
@@ -33,6 +33,7 @@ class LaneEngine {
 
   LanePrograms& programs_;
   ModelContext& context_;
+  NumberChecks checks_;
   const SampleTask task_;
   std::optional<LaneRunner> runner_, derivative_runner_;  ///< made when first used
   std::optional<StiffRetry> stiff_retry_;                 ///< likewise

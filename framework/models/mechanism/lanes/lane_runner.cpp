@@ -91,9 +91,9 @@ class LaneRunner::Impl : public lanes::SampleStream {
         start_(spec, model, task.box_center, task.layout.times),
         modes_(model) {}
 
-  std::vector<Index> run(ModelContext& context, const Eigen::Ref<const MatrixXd>& parameters,
+  std::vector<Index> run(NumberChecks& checks, const Eigen::Ref<const MatrixXd>& parameters,
                          Eigen::Ref<MatrixXd> responses, MatrixXd* derivatives, SampleStatus* statuses) {
-    context_ = &context;
+    checks_ = &checks;
     parameters_ = &parameters;
     responses_ = &responses;
     statuses_ = statuses;
@@ -153,8 +153,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
     statuses_[column] = {};
     try {
       const VectorXd point = parameters_->col(column);
-      context_->numbers.update(point);
-      checkNumbers(*context_);
+      checks_->check(point);
       fillModes(column, point);
       start_.fill(point, sample);
       requireWithinStops(*context_,
@@ -253,7 +252,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
   LaneModes modes_;
   const lanes::StepEngine* engine_ = nullptr;
   std::optional<lanes::Integrator> integrator_;
-  ModelContext* context_ = nullptr;
+  NumberChecks* checks_ = nullptr;
   const Eigen::Ref<const MatrixXd>* parameters_ = nullptr;
   Eigen::Ref<MatrixXd>* responses_ = nullptr;
   MatrixXd* derivatives_ = nullptr;
@@ -268,10 +267,10 @@ LaneRunner::LaneRunner(const LaneModel& model, const SampleTask& task, const Mod
     : impl_(std::make_unique<Impl>(model, task, spec)) {}
 LaneRunner::~LaneRunner() = default;
 
-std::vector<Index> LaneRunner::run(ModelContext& context, const Eigen::Ref<const MatrixXd>& parameters,
+std::vector<Index> LaneRunner::run(NumberChecks& checks, const Eigen::Ref<const MatrixXd>& parameters,
                                    Eigen::Ref<MatrixXd> responses, MatrixXd* derivatives,
                                    SampleStatus* statuses) {
-  return impl_->run(context, parameters, responses, derivatives, statuses);
+  return impl_->run(checks, parameters, responses, derivatives, statuses);
 }
 
 }  // namespace twinmap

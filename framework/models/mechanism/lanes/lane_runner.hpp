@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/models/mechanism/lanes/lane_model.hpp"
-#include "framework/models/mechanism/model_context.hpp"
+#include "framework/models/mechanism/lanes/number_checks.hpp"
 #include "framework/models/mechanism/sample_task.hpp"
 #include "framework/simulation/simulator.hpp"
 
@@ -19,9 +19,9 @@ class LaneRunner {
   ~LaneRunner();
 
   /// As Simulator::simulate. `derivatives`: null, or for each column of `parameters` one column a parameter;
-  /// the model must have been compiled with derivatives then. `context` is used to check the numbers. Returns
-  /// the columns that reached the step limit.
-  std::vector<Eigen::Index> run(ModelContext& context, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+  /// the model must have been compiled with derivatives then. Returns the columns that reached the step
+  /// limit.
+  std::vector<Eigen::Index> run(NumberChecks& checks, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                 Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd* derivatives,
                                 SampleStatus* statuses);
 

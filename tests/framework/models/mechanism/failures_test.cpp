@@ -30,6 +30,20 @@ TEST(Failures, NameBodyQuantityValueAndRule) {
   EXPECT_EQ(getReason(makeOscillator(), Eigen::Vector3d(1.0, nan, 0.0)), "parameter: k = nan must be finite");
 }
 
+TEST(Failures, AreThoseOfNumbersThatFollowParameters) {
+  ModelSpec model = makeOscillator();
+  model.constants = {constant("fixed", "1.2"), constant("rest", "m - fixed"), constant("soft", "1 / c")};
+  model.system.bodies[0].mass = ex("rest");
+  model.system.elements.get<Spring>() = {{name("x"), ex("fixed / (k - 12)"), ex("0")}};
+  model.parameters[0].bounds = {1.5, 2.5};
+  EXPECT_EQ(getReason(model, Eigen::Vector3d(1.0, 10.0, 0.5)),
+            "body 'block': mass = -0.2 kg must be positive");
+  EXPECT_EQ(getReason(model, Eigen::Vector3d(2.0, 12.0, 0.5)),
+            "spring on 'x': stiffness = inf must be finite");
+  EXPECT_EQ(getReason(model, Eigen::Vector3d(2.0, 11.0, 0.0)), "constant: soft = inf must be finite");
+  EXPECT_EQ(getReason(model, Eigen::Vector3d(2.0, 13.0, 0.5)), "");
+}
+
 TEST(Failures, StepLimitNamesItsTime) {
   ModelSpec model = makeOscillator();
   model.simulation.max_steps = 20;
