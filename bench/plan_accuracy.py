@@ -1,8 +1,8 @@
 """What `twinmap plan` predicts beside what a run takes, on experiments of different kinds: a table in Markdown.
 
 Usage: plan_accuracy.py [BUILD] [--shared] [--only NAME]
-BUILD (default: build/release) is a built folder. One thread. --shared: on a machine that others use too, both in processor
-time: a small library makes the steady clock, by which a plan measures its probe, that of the process.
+BUILD (default: build/release) is a built folder. One thread. --shared: on a machine that others use too, both in
+processor time: a small library makes the steady clock, by which a plan measures its probe, that of the process.
 """
 import argparse
 import os

@@ -25,8 +25,8 @@ unsigned LanePacket::findEvents() {
     brackets_[lane] = {};
   }
   for (const double fraction : kLookedAt) {
-    forEach(looking, [&](int lane) { fractions_[lane] = fraction; });
-    calcGuardsWithin(looking);
+    forEach(looking, [&](int lane) { arrays_.fraction[lane] = fraction; });
+    calcGuardsWithin();
     forEach(looking, [&](int lane) {
       EventBracket& bracket = brackets_[lane];
       const double smallest = events_->calcSmallest(lane);
@@ -46,17 +46,13 @@ unsigned LanePacket::findEvents() {
   return found;
 }
 
-/// At each lane's fraction of its step; those of other lanes mean nothing.
-void LanePacket::calcGuardsWithin(unsigned lanes) {
-  forEach(lanes, [this](int lane) {
-    event_times_[lane] = arrays_.time[lane] + fractions_[lane] * arrays_.step[lane];
-    std::fill_n(arrays_.wanted, engine_.times, event_times_[lane]);
-    engine_.interpolate(lane, arrays_);
-    for (int row = 0; row < arrays_.rows; ++row) {
-      states_within_[row * count_ + lane] = arrays_.interpolated[row * engine_.times];
-    }
-  });
-  events_->calcGuards(event_times_.data(), states_within_.data());
+/// At each lane's fraction of its step.
+void LanePacket::calcGuardsWithin() {
+  engine_.interpolateAll(arrays_);
+  for (int lane = 0; lane < count_; ++lane) {
+    event_times_[lane] = arrays_.time[lane] + arrays_.fraction[lane] * arrays_.step[lane];
+  }
+  events_->calcGuards(event_times_.data(), arrays_.interpolated);
 }
 
 /// Leaves guards and states at the brackets' upper ends.
@@ -68,16 +64,17 @@ void LanePacket::narrow(unsigned lanes) {
       const double time = std::max(std::abs(arrays_.end[lane]), kSmallestTime);
       const bool is_narrow = (bracket.high - bracket.low) * arrays_.step[lane] <= kWidth * time;
       open &= is_narrow ? ~(1u << lane) : ~0u;
-      fractions_[lane] = bracket.choose(attempt);
+      arrays_.fraction[lane] = bracket.choose(attempt);
     });
     if (open == 0) {
       break;
     }
-    calcGuardsWithin(open);
-    forEach(open, [&](int lane) { brackets_[lane].update(fractions_[lane], events_->calcSmallest(lane)); });
+    calcGuardsWithin();
+    forEach(open,
+            [&](int lane) { brackets_[lane].update(arrays_.fraction[lane], events_->calcSmallest(lane)); });
   }
-  forEach(lanes, [&](int lane) { fractions_[lane] = brackets_[lane].high; });
-  calcGuardsWithin(lanes);
+  forEach(lanes, [&](int lane) { arrays_.fraction[lane] = brackets_[lane].high; });
+  calcGuardsWithin();
 }
 
 /// The next step is no longer than the time since the last event, so that flights between impacts that follow
@@ -85,7 +82,7 @@ void LanePacket::narrow(unsigned lanes) {
 void LanePacket::endStepAtEvent(int lane) {
   Lane& l = lanes_[lane];
   for (int row = 0; row < arrays_.rows; ++row) {
-    arrays_.stage_state[row * count_ + lane] = states_within_[row * count_ + lane];
+    arrays_.stage_state[row * count_ + lane] = arrays_.interpolated[row * count_ + lane];
   }
   const double time = std::min(event_times_[lane], arrays_.end[lane]);
   const double smallest = kSmallestStep * std::max(std::abs(time), kSmallestTime);

@@ -9,7 +9,7 @@
 namespace twinmap::lanes {
 namespace {
 
-constexpr int kSingleRows = 13;  // of StepArrays
+constexpr int kSingleRows = 14;  // of StepArrays
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -34,9 +34,7 @@ LanePacket::LanePacket(const Problem& problem, const std::vector<double>& times,
   if (problem.guard_count > 0) {
     events_.emplace(problem, engine.program);
     brackets_.resize(count_);
-    fractions_.resize(count_);
     event_times_.resize(count_);
-    states_within_.resize(static_cast<std::size_t>(problem.getRowCount()) * count_);
   }
   if (!problem.projection.outputs.empty()) {
     projection_.emplace(problem, engine.program);
@@ -78,8 +76,9 @@ void LanePacket::placeArrays(const Problem& problem) {
     a.slopes[j] = takeRows(rows);
   }
   a.interpolated = takeRows(rows);
-  for (double** row : {&a.wanted, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
-                       &a.proposed, &a.growth, &a.phase_end, &a.next_output, &a.steps, &a.next_check}) {
+  for (double** row :
+       {&a.wanted, &a.fraction, &a.time, &a.step, &a.end, &a.smallest_pivot, &a.error, &a.accepted,
+        &a.proposed, &a.growth, &a.phase_end, &a.next_output, &a.steps, &a.next_check}) {
     *row = takeRows(1);
   }
   a.absolute_tolerance = absolute_.data();

@@ -42,7 +42,7 @@ class LanePacket {
   void beginAfterJump(int lane);
   void moveBack(int lane);
   unsigned findEvents();
-  void calcGuardsWithin(unsigned lanes);
+  void calcGuardsWithin();
   void narrow(unsigned lanes);
   void endStepAtEvent(int lane);
   void startEvent(int lane, int event);
@@ -80,9 +80,7 @@ class LanePacket {
   unsigned firing_ = 0;    ///< lanes with an event due
   unsigned settling_ = 0;  ///< lanes in which events may be due
   std::vector<EventBracket> brackets_;
-  std::vector<double> fractions_;      ///< of each lane's step, where its guards are asked
-  std::vector<double> event_times_;    ///< there
-  std::vector<double> states_within_;  ///< there, rows
+  std::vector<double> event_times_;
   std::optional<StateProjection> projection_;
   std::vector<const double*> derivatives_, pivots_;
   std::vector<double> absolute_, relative_;

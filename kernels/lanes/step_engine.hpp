@@ -11,13 +11,15 @@ struct StepArrays {
   const double* const* pivot_values;  ///< and each pivot
   double* stage_state;                ///< rows; what the program is evaluated at
   double* stage_time;
-  double* state;         ///< rows; at the begin of the step
-  double* slopes[8];     ///< rows each; [1] to [7], k in Dormand and Prince's pair
-  double* interpolated;  ///< rows of StepEngine::times; a lane's solution within the finished step
-  double* wanted;        ///< as many times of that step
+  double* state;      ///< rows; at the begin of the step
+  double* slopes[8];  ///< rows each; [1] to [7], k in Dormand and Prince's pair
+  double*
+      interpolated;  ///< rows of StepEngine::times, or of all lanes; the solution within the finished step
+  double* wanted;    ///< as many times of that step
   const double* absolute_tolerance;  ///< one number a row
   const double* relative_tolerance;  ///< one number a row
   // of the step in work
+  double* fraction;        ///< 0 ... 1 of it, where all lanes are interpolated
   double* time;            ///< its begin
   double* step;            ///< its size
   double* end;             ///< its end; exactly the phase's for the last of a phase
@@ -51,6 +53,8 @@ struct StepEngine {
   unsigned (*finish)(const StepArrays& arrays);
   /// The states of one lane at each of the times `wanted`, before accept().
   void (*interpolate)(int lane, const StepArrays& arrays);
+  /// The state of each lane at its `fraction` of the step, before accept().
+  void (*interpolateAll)(const StepArrays& arrays);
   /// Takes the new time, state and slopes in lanes where `accepted` is not 0.
   void (*accept)(const StepArrays& arrays);
 };

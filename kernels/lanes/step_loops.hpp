@@ -112,6 +112,23 @@ class StepLoops {
     }
   }
 
+  static void interpolateAll(const StepArrays& a) {
+    for (int k = 0; k < kLanes; k += kWidth) {
+      P weights[8];
+      calcDenseWeights(load(a.fraction + k), weights);
+      for (const int j : kDenseStages) {
+        weights[j] *= load(a.step + k);
+      }
+      for (int at = k; at < a.rows * kLanes; at += kLanes) {
+        P sum = load(a.state + at);
+        for (const int j : kDenseStages) {
+          sum = program::fma(load(a.slopes[j] + at), weights[j], sum);
+        }
+        store(a.interpolated + at, sum);
+      }
+    }
+  }
+
  private:
   static P load(const double* source) { return program::load<P>(source); }
   static void store(double* target, P value) { program::store<P>(target, value); }

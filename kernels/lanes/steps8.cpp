@@ -10,9 +10,9 @@ using Two = StepLoops<program::Packet8, 2>;
 
 }  // namespace
 
-const StepEngine kSteps8{program::kEngine8, One::kWidth,      One::plan,  One::prepareStage,
-                         One::finish,       One::interpolate, One::accept};
-const StepEngine kSteps16{program::kEngine16, Two::kWidth,      Two::plan,  Two::prepareStage,
-                          Two::finish,        Two::interpolate, Two::accept};
+const StepEngine kSteps8{program::kEngine8, One::kWidth,      One::plan,           One::prepareStage,
+                         One::finish,       One::interpolate, One::interpolateAll, One::accept};
+const StepEngine kSteps16{program::kEngine16, Two::kWidth,      Two::plan,           Two::prepareStage,
+                          Two::finish,        Two::interpolate, Two::interpolateAll, Two::accept};
 
 }  // namespace twinmap::lanes

@@ -373,6 +373,33 @@ TEST(DryFriction, HasExactDerivativesThroughStickAndSlip) {
   expectExactEvents(model, Eigen::Vector2d(4.0, 1.0), 2.0);
 }
 
+/// The piston passes dead centres, where no force at it holds the loop.
+TEST(DryFriction, InAClosedLoopHasExactDerivativesThroughDeadCentres) {
+  ModelSpec model = makeModel(1.5);
+  const auto addBar = [&model](const std::string& text, const std::string& moment,
+                               const std::string& coordinate, const std::string& parent,
+                               const Expression3& at) {
+    BodySpec bar = body(text, "0.4", ex3("0.05", "0", "0"), ex3("0", moment, moment),
+                        joint(JointType::kPin, {coordinate}, parent));
+    bar.joint.in_parent.point = at;
+    model.system.bodies.push_back(bar);
+  };
+  addBar("crank", "4e-4", "a", "ground", kOrigin);
+  addBar("rod", "2e-3", "b", "crank", ex3("0.08", "0", "0"));
+  model.system.bodies.push_back(body("piston", "m", kOrigin, kOrigin, joint(JointType::kSlider, {"x"})));
+  ConstraintSpec closed;
+  closed.coincident = CoincidentSpec{station("rod", ex3("0.22", "0", "0")), station("piston", kOrigin)};
+  model.system.constraints = {closed};
+  model.parameters = {parameter("m", 0.4, 0.8), parameter("Fc", 1, 3)};
+  model.system.elements.get<Friction>() = {dryFriction("x", "Fc")};
+  model.system.elements.get<ForceLaw>() = {law("a", "0.6 * sin(7 * t)")};
+  start(model, "a", "0.4", "8");
+  model.initial.coordinates.push_back(value("b", "-0.5"));
+  model.initial.coordinates.push_back(value("x", "0.3"));
+  model.outputs = {coordinateOutput("a"), coordinateOutput("x")};
+  expectExactEvents(model, Eigen::Vector2d(0.6, 2.0), 1.5);
+}
+
 TEST(DryFriction, OfSeveralJointsSticksAndSlipsInEach) {
   // a double pendulum with dry friction in both hinges loses its energy and stays where it sticks
   ModelSpec model = makeModel(6.0);

@@ -157,20 +157,23 @@ class EventRecorder {
     return behind;
   }
 
-  /// The last of the sliding speed is taken by an impulse, which is rounding.
+  /// What slid to a halt slides on if its friction, which then opposes that, does not keep it from it. This
+  /// needs no force that would hold it, which is infinite where a loop is at a dead centre and moves it
+  /// nonetheless.
   Behind recordFriction(int k) const {
-    ModelState<Symbol> stuck = state_;
-    const Symbols impulse =
-        equations::calcImpulse(switched_.system, state_, getPair(k), -calcSliding(k, state_.speeds));
-    for (std::size_t i = 0; i < impulse.size(); ++i) {
-      stuck.speeds[i] += impulse[i];
-    }
-    stuck.modes[k] = 0.0;
-    const Symbol needed = switched_.calcMotion(stuck).held[k];
-    const Symbol slid = notEqual(state_.modes[k], Symbol(0.0));
-    const Symbol holds = lessOrEqual(abs(needed), getStaticLevel(getFriction(k)));
-    stuck.modes[k] = select(both(slid, holds), Symbol(0.0), -calcSide(needed));
-    return {stuck.speeds, stuck.modes};
+    const Symbol none(0.0), onwards = calcAcceleration(k, 1.0), backwards = calcAcceleration(k, -1.0);
+    const Symbol halted =
+        select(less(none, onwards), Symbol(1.0), select(less(backwards, none), Symbol(-1.0), none));
+    Behind behind{state_.speeds, state_.modes};
+    behind.modes[k] = select(notEqual(state_.modes[k], none), halted, -calcSide(held_[k]));
+    return behind;
+  }
+
+  /// In another mode.
+  Symbol calcAcceleration(int k, double mode) const {
+    ModelState<Symbol> other = state_;
+    other.modes[k] = mode;
+    return getPair(k).of(switched_.calcMotion(other).accelerations);
   }
 
   const SwitchedModel& switched_;

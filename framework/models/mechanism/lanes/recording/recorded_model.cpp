@@ -55,7 +55,6 @@ class ModelRecorder {
     recorded.initial = recordInitial();
     recorded.initial.resize(recorded.derivatives.size(), Symbol(0.0));
     recorded.loops = loops_;
-    recorded.prescribed = findPrescribed();
     recorded.recorder = std::move(recorder_);
     return recorded;
   }
@@ -94,17 +93,12 @@ class ModelRecorder {
     recorded.derivatives = motion.rates;
     append(motion.accelerations, recorded.derivatives);
     append(motion.state_rates, recorded.derivatives);
-    holdPrescribed(recorded.derivatives);
+    for (const int i : findPrescribed()) {  // what the signals say is not integrated
+      recorded.derivatives[i] = recorded.derivatives[system_.coordinate_count + i] = 0.0;
+    }
     recorded.pivots = motion.pivots;
     if (!system_.closures.empty()) {
       recordProjected(recorded);
-    }
-  }
-
-  /// What the signals say is not integrated.
-  void holdPrescribed(Symbols& derivatives) const {
-    for (const int i : findPrescribed()) {
-      derivatives[i] = derivatives[system_.coordinate_count + i] = 0.0;
     }
   }
 
@@ -121,12 +115,10 @@ class ModelRecorder {
     for (std::size_t i = 0; i < given.size(); ++i) {
       recorded.relaxed[i] += kRelaxations / model_.simulation.duration * (recorded.projected[i] - given[i]);
     }
-    holdPrescribed(recorded.relaxed);
   }
 
   ModelState<Symbol> project(ModelState<Symbol> state, int rounds) {
-    auto [coordinates, speeds] =
-        equations::project(system_, state.coordinates, state.speeds, rounds, findPrescribed());
+    auto [coordinates, speeds] = equations::project(system_, state.coordinates, state.speeds, rounds);
     state.coordinates = std::move(coordinates);
     state.speeds = std::move(speeds);
     return state;
@@ -302,11 +294,6 @@ class ModelRecorder {
     Symbols rates = calcNamed(model_.initial.speeds);
     if (model_.initial.equilibrium) {
       rates.assign(rates.size(), Symbol(0.0));
-    }
-    for (const MotionSpec& motion : model_.system.motions) {
-      const int i = names_.findCoordinate(motion.coordinate);
-      coordinates[i] = signals_[findSignal(model_, motion.follows)];
-      rates[i] = program::calcTangents({coordinates[i]}, {{recorder_->time(), 1.0}})[0];
     }
     append(loops_ ? rates : equations::calcSpeeds(system_, coordinates, rates), coordinates);
     for (const StateSpec& state : model_.system.states) {
