@@ -11,8 +11,10 @@ constexpr const char* kCurves = "curves";
 
 DataTable makeCurveTable(const CsvTable& curves) {
   DataTable table;
-  table.add("curve", curves.listTexts("curve"));
-  for (const char* column : {"sample", "argument", "true", "inferred", "lower", "upper"}) {
+  for (const char* column : {"curve", "sample"}) {
+    table.add(column, curves.listTexts(column));
+  }
+  for (const char* column : {"argument", "true", "inferred", "lower", "upper"}) {
     table.add(column, curves.listNumbers(column));
   }
   return table;

@@ -1,6 +1,6 @@
 // Forces in joints, of force elements and of constraints: against closed forms, against Simbody's reaction
-// forces and multipliers (an engine in lanes is an error unless its outputs are Simbody's), and welds and pins
-// that close loops against the joints that they stand for.
+// forces and multipliers (an engine in lanes is an error unless its outputs are Simbody's), and welds and
+// pins that close loops against the joints that they stand for.
 
 #include <cmath>
 
@@ -49,7 +49,8 @@ void expectPairs(ModelSpec model, double tolerance = 1e-9) {
     for (Index i = 0; i < response.cols(); i += 2) {
       const double largest = response.col(i + 1).cwiseAbs().maxCoeff();
       EXPECT_GT(largest, 0.0) << i;
-      EXPECT_LT((response.col(i) - response.col(i + 1)).cwiseAbs().maxCoeff(), tolerance * (1.0 + largest)) << i;
+      EXPECT_LT((response.col(i) - response.col(i + 1)).cwiseAbs().maxCoeff(), tolerance * (1.0 + largest))
+          << i;
     }
   }
 }
@@ -113,17 +114,18 @@ TEST(Reactions, OfALoopAreSimbodys) {
   // a body on a ball joint held by a rod and, elsewhere, by a plane: nothing is redundant
   ModelSpec model = makeModel(1.0);
   model.system.gravity = ex3("1", "2", "-9.81");
-  model.system.bodies = {
-      body("arm", "0.7", ex3("0.2", "0", "0"), ex3("1e-2", "2e-2", "3e-2"),
-           joint(JointType::kBall, {"q1", "q2", "q3"})),
-      body("rider", "0.3", ex3("0.1", "0", "0.1"), ex3("1e-3", "1e-3", "1e-3"),
-           joint(JointType::kSlider, {"s"}, "arm"))};
+  model.system.bodies = {body("arm", "0.7", ex3("0.2", "0", "0"), ex3("1e-2", "2e-2", "3e-2"),
+                              joint(JointType::kBall, {"q1", "q2", "q3"})),
+                         body("rider", "0.3", ex3("0.1", "0", "0.1"), ex3("1e-3", "1e-3", "1e-3"),
+                              joint(JointType::kSlider, {"s"}, "arm"))};
   ConstraintSpec rod, plane;
   rod.name = name("rod");
-  rod.rod = RodSpec{station("ground", ex3("0.3", "0.3", "0")), station("rider", ex3("0.1", "0", "0")), ex("0.35")};
+  rod.rod =
+      RodSpec{station("ground", ex3("0.3", "0.3", "0")), station("rider", ex3("0.1", "0", "0")), ex("0.35")};
   plane.name = name("plane");
-  plane.point_in_plane = PointInPlaneSpec{station("arm", ex3("0.3", "0", "0")),
-                                          PlaneSpec{name("ground"), ex3("0", "0", "0.02"), ex3("0", "1", "5")}};
+  plane.point_in_plane =
+      PointInPlaneSpec{station("arm", ex3("0.3", "0", "0")),
+                       PlaneSpec{name("ground"), ex3("0", "0", "0.02"), ex3("0", "1", "5")}};
   model.system.constraints = {rod, plane};
   model.initial.coordinates = {value("q1", "0.2"), value("s", "0.1")};
   model.initial.speeds = {value("q1", "1")};
@@ -170,10 +172,14 @@ TEST(Forces, OfElementsOnCoordinatesAreTheirLaws) {
   model.system.elements.get<Stop>() = {stop};
   const std::string v = "(x_dot - y_dot)";
   model.outputs = {
-      forceOf("damper"), formula("-0.7 * x_dot", "N"),
-      forceOf("motor"),  formula("push - 2 * x^3", "N"),
-      forceOf("pad"),    formula("-(50 * z + 0.5 * (" + v + " - 50 * abs(" + v + ") * z / 0.8) + 0.3 * " + v + ")", "N"),
-      forceOf("stop"),   formula("40 * max(0.5 - x, 0)", "N")};
+      forceOf("damper"),
+      formula("-0.7 * x_dot", "N"),
+      forceOf("motor"),
+      formula("push - 2 * x^3", "N"),
+      forceOf("pad"),
+      formula("-(50 * z + 0.5 * (" + v + " - 50 * abs(" + v + ") * z / 0.8) + 0.3 * " + v + ")", "N"),
+      forceOf("stop"),
+      formula("40 * max(0.5 - x, 0)", "N")};
   expectPairs(model);
 }
 
@@ -205,16 +211,22 @@ TEST(Forces, BetweenBodiesHaveComponentsInGroundAxes) {
   model.system.elements.get<Contact>() = {contact};
   const std::string r = "sqrt(x^2 + y^2 + z^2)", slip = "sqrt(x_dot^2 + y_dot^2 + 1e-24)",
                     pressure = "900 * max(-1 - z, 0)";
-  model.outputs = {
-      forceOf("spring"), formula("20 * (" + r + " - 1)", "N"),
-      forceOf("spring", ForceComponent::kForceX), formula("-20 * (" + r + " - 1) * x / " + r, "N"),
-      forceOf("damper"), formula("0.4 * (x * x_dot + y * y_dot + z * z_dot) / " + r, "N"),
-      forceOf("wind", ForceComponent::kForceY), formula("x", "N"),
-      forceOf("twist", ForceComponent::kMomentZ), formula("x", "N m"),
-      forceOf("floor"), formula(pressure, "N"),
-      forceOf("floor", ForceComponent::kForceZ), formula(pressure, "N"),
-      forceOf("floor", ForceComponent::kForceY),
-      formula("-0.3 * " + pressure + " * tanh(" + slip + " / 0.1) * y_dot / " + slip, "N")};
+  model.outputs = {forceOf("spring"),
+                   formula("20 * (" + r + " - 1)", "N"),
+                   forceOf("spring", ForceComponent::kForceX),
+                   formula("-20 * (" + r + " - 1) * x / " + r, "N"),
+                   forceOf("damper"),
+                   formula("0.4 * (x * x_dot + y * y_dot + z * z_dot) / " + r, "N"),
+                   forceOf("wind", ForceComponent::kForceY),
+                   formula("x", "N"),
+                   forceOf("twist", ForceComponent::kMomentZ),
+                   formula("x", "N m"),
+                   forceOf("floor"),
+                   formula(pressure, "N"),
+                   forceOf("floor", ForceComponent::kForceZ),
+                   formula(pressure, "N"),
+                   forceOf("floor", ForceComponent::kForceY),
+                   formula("-0.3 * " + pressure + " * tanh(" + slip + " / 0.1) * y_dot / " + slip, "N")};
   expectPairs(model);
 }
 
@@ -292,7 +304,8 @@ TEST(Loops, OfAPinAreAPinJoint) {
   }
   for (const Engine engine : {Engine::kLanes, Engine::kSimbody}) {
     model.simulation.engine = engine;
-    EXPECT_LT((runModel(model, times) - expected).cwiseAbs().maxCoeff(), 1e-5 * expected.cwiseAbs().maxCoeff());
+    EXPECT_LT((runModel(model, times) - expected).cwiseAbs().maxCoeff(),
+              1e-5 * expected.cwiseAbs().maxCoeff());
   }
 }
 
@@ -301,9 +314,9 @@ TEST(Loops, OfAWeldHoldTheBody) {
   ModelSpec model = makeModel(1.0);
   model.system.gravity = ex3("0", "-9.81", "0");
   const Expression3 moments = ex3("0.01", "0.01", "0.01");
-  model.system.bodies = {
-      body("one", "1", ex3("0.2", "0", "0"), moments, joint(JointType::kPin, {"q"})),
-      body("two", "0.5", ex3("0.1", "0", "0"), moments, joint(JointType::kFree, {"a", "b", "c", "x", "y", "z"}))};
+  model.system.bodies = {body("one", "1", ex3("0.2", "0", "0"), moments, joint(JointType::kPin, {"q"})),
+                         body("two", "0.5", ex3("0.1", "0", "0"), moments,
+                              joint(JointType::kFree, {"a", "b", "c", "x", "y", "z"}))};
   ConstraintSpec weld;
   weld.name = name("joint");
   weld.weld = WeldSpec{{name("one"), {ex3("0.3", "0", "0"), ex3("0.2", "0.1", "0.5")}},
@@ -335,8 +348,8 @@ TEST(Loops, OfAWeldHoldTheBody) {
 }
 
 TEST(Loops, OfPinsAndWeldsAreSimbodysAndHaveExactDerivatives) {
-  // a spatial four-bar whose last hinge is a pin in space is overdetermined unless its axes fit: an arm on two
-  // hinges that meet in a pin on a third body
+  // a spatial four-bar whose last hinge is a pin in space is overdetermined unless its axes fit: an arm on
+  // two hinges that meet in a pin on a third body
   ModelSpec model = makeModel(1.0);
   model.system.gravity = ex3("0", "-9.81", "0.5");
   model.parameters = {parameter("l", 0.28, 0.32), parameter("m", 0.2, 0.4)};
@@ -349,7 +362,8 @@ TEST(Loops, OfPinsAndWeldsAreSimbodysAndHaveExactDerivatives) {
                          body("rocker", "m", ex3("0.1", "0.01", "0"), moments, third)};
   ConstraintSpec pin;
   pin.name = name("pin");
-  pin.pin = PinSpec{{name("coupler"), {ex3("l", "0", "0"), {}}}, {name("rocker"), {ex3("0.2", "0", "0"), {}}}};
+  pin.pin =
+      PinSpec{{name("coupler"), {ex3("l", "0", "0"), {}}}, {name("rocker"), {ex3("0.2", "0", "0"), {}}}};
   model.system.constraints = {pin};
   start(model, "a", "1", "3");
   model.initial.coordinates.push_back(value("b", "-0.677"));
