@@ -63,8 +63,7 @@ std::vector<FmuVariable> listVariables(const ExportedModel& model) {
   addEstimates(model, "upper", "upper end of its 95 % interval", variables);
   variables.push_back(
       {"Real", "p_value", "", "of the residual, as if the model were right", "output", "discrete", "0.0"});
-  variables.push_back({"Enumeration", "status", "", "the most severe status",
-                       "output", "discrete", "32"});
+  variables.push_back({"Enumeration", "status", "", "the most severe status", "output", "discrete", "32"});
   variables.push_back(
       {"Integer", "statuses", "", "all that is, the sum of their values", "output", "discrete", "0"});
   variables.push_back({"Integer", "inferences", "", "how many there have been", "output", "discrete", "0"});

@@ -57,8 +57,7 @@ void addStddevOverBox(const RunFolder& run, Page& page) {
   figure.panels = {makeBoxPanel(getStddevColumn("{p}"), "Stated sd of {p.label}", "stated sd"),
                    makeBoxPanel(getErrorColumn("{p}"), "Absolute error of {p.label}", "absolute error")};
   if (has_limits) {
-    figure.panels.push_back(
-        makeBoxPanel(getLimitColumn("{p}"), "Smallest possible sd of {p}", "limit"));
+    figure.panels.push_back(makeBoxPanel(getLimitColumn("{p}"), "Smallest possible sd of {p}", "limit"));
   }
   figure.columns = static_cast<int>(figure.panels.size());
   Section section{"stddev-over-box", "Standard deviation over the bounds", "", {}};
