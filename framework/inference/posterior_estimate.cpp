@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/estimation/posterior/noise_candidates.hpp"
+#include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 

@@ -10,7 +10,7 @@
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/noise/noise.hpp"
-#include "framework/estimation/posterior/noise_candidates.hpp"
+#include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/ridges/simulated_ridges.hpp"
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

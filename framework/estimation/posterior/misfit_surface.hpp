@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/estimation/log_coordinates.hpp"
-#include "framework/estimation/posterior/residual_loss.hpp"
+#include "framework/estimation/posterior/noise/residual_loss.hpp"
 #include "framework/estimation/refined/misfit.hpp"
 #include "framework/experiment/points/prior.hpp"
 

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/residual_loss.hpp"
+#include "framework/estimation/posterior/noise/residual_loss.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "framework/estimation/posterior/noise_candidates.hpp"
+#include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "kernels/linalg/autocorrelation.hpp"
 #include "tests/framework/estimation/refined/problem.hpp"

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/output_loss.hpp"
+#include "framework/estimation/posterior/noise/output_loss.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "framework/estimation/posterior/output_loss.hpp"
+#include "framework/estimation/posterior/noise/output_loss.hpp"
 
 namespace twinmap {
 

@@ -1,12 +1,12 @@
-#include "framework/estimation/posterior/noise_candidates.hpp"
+#include "framework/estimation/posterior/noise/noise_candidates.hpp"
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/complement.hpp>
 #include <cmath>
 
-#include "framework/estimation/posterior/colour_fit.hpp"
-#include "framework/estimation/posterior/residual_loss.hpp"
+#include "framework/estimation/posterior/noise/colour_fit.hpp"
+#include "framework/estimation/posterior/noise/residual_loss.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 

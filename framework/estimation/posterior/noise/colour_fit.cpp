@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/colour_fit.hpp"
+#include "framework/estimation/posterior/noise/colour_fit.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/posterior/noise_hypothesis.hpp"
+#include "framework/estimation/posterior/noise/noise_hypothesis.hpp"
 
 namespace twinmap {
 

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/residual_loss.hpp"
+#include "framework/estimation/posterior/noise/residual_loss.hpp"
 
 #include <algorithm>
 #include <cmath>
