@@ -86,15 +86,16 @@ void appendRest(ModelContext& context, const LaneModel& lanes, const VectorXd& b
 std::vector<std::string> describeModel(ModelContext& context, const LaneModel* lanes,
                                        const VectorXd& box_center) {
   const std::size_t coordinates = context.names.getCoordinateNames().size();
+  const std::size_t prescribed = context.model.system.motions.size();
   std::vector<std::string> lines{describeLine("bodies", std::to_string(context.model.system.bodies.size())),
                                  describeLine("coordinates", std::to_string(coordinates))};
   if (lanes != nullptr && lanes->loops) {
     const std::size_t kept = lanes->loops->plan.rows.size(), all = lanes->loops->labels.size();
     lines.push_back(
         describeLine("loops", fmt::format("{} conditions, {} of them redundant", all, all - kept)));
-    lines.push_back(describeLine("degrees of freedom", std::to_string(coordinates - kept)));
+    lines.push_back(describeLine("degrees of freedom", std::to_string(coordinates - prescribed - kept)));
   } else if (context.model.system.constraints.empty()) {
-    lines.push_back(describeLine("degrees of freedom", std::to_string(coordinates)));
+    lines.push_back(describeLine("degrees of freedom", std::to_string(coordinates - prescribed)));
   }
   lines.push_back(describeLine("states", std::to_string(context.names.getStateNames().size())));
   if (lanes != nullptr) {

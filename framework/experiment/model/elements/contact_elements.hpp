@@ -62,7 +62,6 @@ struct Stop {
   std::optional<S> stiffness{}, exponent{}, dissipation{};
   std::optional<S> restitution{};
   OwnNameOf<S> name{};
-  int mode = -1;  ///< of a rigid one: its place among the modes of switches
 
   bool isRigid() const { return restitution.has_value(); }
 };
@@ -99,7 +98,7 @@ S calcStopGap(const Stop<S>& s, const S& place) {
 template <class S, class Sum>
 void addForces(const Stop<S>& s, Sum& sum) {
   if (s.isRigid()) {
-    return sum.addBetween(s.coordinate, s.against, sum.getHeld(s.mode));
+    return;
   }
   const S apart = sum.calcDifference(s.coordinate, s.against), rate = sum.calcSlip(s.coordinate, s.against);
   const ContactLaw<S> law{*s.stiffness, s.dissipation ? *s.dissipation : S(0.0), s.exponent};

@@ -140,7 +140,7 @@ void addForces(const Friction<S>& s, Sum& sum) {
     sum.setStateRate(s.bristle->state, change);
     friction = s.bristle->stiffness * deflection + s.bristle->damping * change + friction;
   } else if (s.switches()) {
-    friction = sum.calcSided(s.mode, level) + friction - sum.getHeld(s.mode);
+    friction = sum.calcSided(s.mode, level) + friction;
   } else {
     friction = level * tanh(v / *s.onset_speed) + friction;
   }

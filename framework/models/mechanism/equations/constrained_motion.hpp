@@ -63,6 +63,26 @@ struct ConstrainedMotion {
   std::vector<S> pivots;  ///< of the mass matrix, then of the conditions
 };
 
+/// A coordinate whose acceleration is known.
+template <class S>
+struct Prescribed {
+  int coordinate;
+  S acceleration;
+};
+
+/// What known accelerations do to conditions becomes part of their bias, and their forces do not act on those
+/// coordinates.
+template <class S>
+void prescribe(const std::vector<Prescribed<S>>& known, std::vector<ClosureTerms<S>>& closures) {
+  for (ClosureTerms<S>& closure : closures) {
+    for (const Prescribed<S>& one : known) {
+      S& slope = closure.row[one.coordinate];
+      closure.bias = closure.bias + slope * one.acceleration;
+      slope = S(0.0);
+    }
+  }
+}
+
 /// M u' + G' l = f and G u' + bias = 0, by elimination of u'.
 template <class S>
 ConstrainedMotion<S> solveConstrained(LinearSystem<S> equations,
@@ -85,20 +105,36 @@ ConstrainedMotion<S> solveConstrained(LinearSystem<S> equations,
   return motion;
 }
 
+/// Couples a coordinate to no other: its row and column of the mass matrix, of which the lower triangle is
+/// there, become those of the unit matrix.
+template <class S>
+void hold(int coordinate, std::vector<std::vector<S>>& matrix) {
+  for (int i = 0; i < static_cast<int>(matrix.size()); ++i) {
+    (i < coordinate ? matrix[coordinate][i] : matrix[i][coordinate]) = S(i == coordinate ? 1.0 : 0.0);
+  }
+}
+
 /// Coordinates and speeds that satisfy the conditions, nearest in the metric of the mass matrix: by `rounds`
 /// steps of Newton's method, first for the coordinates, then for the speeds, all with the derivatives at the
-/// state that is given. A distance d from the conditions becomes d^(1 + rounds) over a length^rounds.
+/// state that is given. A distance d from the conditions becomes d^(1 + rounds) over a length^rounds. What is
+/// `held` does not move.
 template <class S>
 std::pair<std::vector<S>, std::vector<S>> project(const SystemValues<S>& system,
                                                   const std::vector<S>& coordinates, std::vector<S> speeds,
-                                                  int rounds) {
+                                                  int rounds, const std::vector<int>& held = {}) {
   std::vector<BodyMotion<S>> motions = calcMotions(system, coordinates, speeds);
-  const std::vector<ClosureTerms<S>> first = calcClosureTerms(system, motions, coordinates);
+  std::vector<ClosureTerms<S>> terms = calcClosureTerms(system, motions, coordinates);
   LinearSystem<S> equations = calcEquationsOfMotion(system, motions, std::vector<Spatial<S>>(motions.size()),
                                                     std::vector<S>(coordinates.size(), S(0.0)));
+  std::vector<ClosureTerms<S>> acting = terms;
+  for (const int coordinate : held) {
+    hold(coordinate, equations.matrix);
+    for (ClosureTerms<S>& closure : acting) {
+      closure.row[coordinate] = S(0.0);
+    }
+  }
   const Factors<S> mass = factorize(std::move(equations.matrix), kSingularPivot, equations.right);
-  const ClosureResponse<S> response = calcClosureResponse(mass, first);
-  std::vector<ClosureTerms<S>> terms = first;
+  const ClosureResponse<S> response = calcClosureResponse(mass, acting);
   std::vector<S> closed = coordinates;
   for (int round = 0; round < rounds; ++round) {
     std::vector<S> distances;

@@ -161,13 +161,13 @@ void placeOwnStates(ForceElements<S>& elements, int first) {
   });
 }
 
-/// Tells rigid stops and friction that sticks their places among the modes of switches (switches.hpp), of
-/// which stops come first.
+/// Tells friction that sticks its place among the modes of switches (switches.hpp), of which rigid stops come
+/// first.
 template <class S>
 void placeSwitches(ForceElements<S>& elements) {
   int place = 0;
-  for (Stop<S>& stop : elements.template get<Stop>()) {
-    stop.mode = stop.isRigid() ? place++ : -1;
+  for (const Stop<S>& stop : elements.template get<Stop>()) {
+    place += stop.isRigid() ? 1 : 0;
   }
   for (Friction<S>& friction : elements.template get<Friction>()) {
     friction.mode = friction.switches() ? place++ : -1;

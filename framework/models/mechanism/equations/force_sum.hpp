@@ -57,19 +57,17 @@ template <class S, class Named>
 class ForceSum {
  public:
   /// All must outlive the sum. `rates`: time derivatives of the coordinates; `states`: of first order;
-  /// `modes`: of switches, or null where they are not known; `held`: the forces with which they hold, or null
-  /// where those are not to be added.
+  /// `modes`: of switches, or null where they are not known.
   ForceSum(const std::vector<BodyMotion<S>>& motions, const std::vector<S>& coordinates,
            const std::vector<S>& rates, const std::vector<S>& states, const Named& named, Loads<S>& loads,
-           const std::vector<S>* modes = nullptr, const std::vector<S>* held = nullptr)
+           const std::vector<S>* modes = nullptr)
       : motions_(motions),
         coordinates_(coordinates),
         rates_(rates),
         states_(states),
         named_(named),
         loads_(loads),
-        modes_(modes),
-        held_(held) {}
+        modes_(modes) {}
 
   const S& getCoordinate(int coordinate) const { return coordinates_[coordinate]; }
   const S& getRate(int coordinate) const { return rates_[coordinate]; }
@@ -81,8 +79,6 @@ class ForceSum {
   S calcSlip(int coordinate, const std::optional<int>& against) const {
     return against ? S(rates_[coordinate] - rates_[*against]) : rates_[coordinate];
   }
-  /// The force with which a switch holds its coordinate.
-  S getHeld(int mode) const { return held_ == nullptr || held_->empty() ? S(0.0) : (*held_)[mode]; }
   /// `level` with the sign of a mode, which is -1, 0 or 1; 0 where modes are not known.
   S calcSided(int mode, const S& level) const {
     using namespace program::real;
@@ -210,7 +206,6 @@ class ForceSum {
   const Named& named_;
   Loads<S>& loads_;
   const std::vector<S>* modes_;
-  const std::vector<S>* held_;
   Exerted<S> exerted_;
   bool on_coordinate_ = false;
 };

@@ -10,13 +10,6 @@
 
 namespace twinmap::equations {
 
-/// A coordinate whose acceleration is known.
-template <class S>
-struct Prescribed {
-  int coordinate;
-  S acceleration;
-};
-
 /// A model's state over a scalar, in the order of SystemNames: coordinates, speeds as Simbody has them, and
 /// states of first order.
 template <class S>
@@ -37,9 +30,9 @@ struct ModelMotion {
   std::vector<S> state_rates;
   std::vector<S> pivots;  ///< all positive, or the mass matrix or a loop is singular
   std::vector<BodyMotion<S>> bodies;
-  std::vector<S> held{};          ///< forces with which switches hold their coordinates
   std::vector<Spatial<S>> loads;  ///< on bodies: gravity and force elements
   std::vector<S> closure_forces;  ///< of the conditions: they act as -G' times these
+  std::vector<S> held{};          ///< forces with which switches hold their coordinates
 };
 
 /// The values that expressions of a state may use.
@@ -115,16 +108,19 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   LinearSystem<S> equations =
       calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));
   prescribe(state.prescribed, equations);
-  auto conditions = calcClosureTerms(values, motion.bodies, state.coordinates);
-  const std::size_t closures = conditions.size();
-  ConstrainedMotion<S> solution = state.modes.empty() ? solveConstrained(std::move(equations), conditions)
-                                                      : solveHeld(std::move(equations), std::move(conditions),
-                                                                  listHeld(values.elements, state.modes));
-  motion.loads = std::move(loads.on_bodies);
-  for (std::size_t i = closures; i < solution.forces.size(); ++i) {
-    motion.held.push_back(-solution.forces[i]);
+  std::vector<ClosureTerms<S>> closures = calcClosureTerms(values, motion.bodies, state.coordinates);
+  const std::size_t closure_count = closures.size();
+  prescribe(state.prescribed, closures);
+  ConstrainedMotion<S> solution = state.modes.empty()
+                                      ? solveConstrained(std::move(equations), closures)
+                                      : solveHeld(std::move(equations), std::move(closures), state.prescribed,
+                                                  listHeld(values.elements, state.modes));
+  const auto first_held = solution.forces.begin() + static_cast<std::ptrdiff_t>(closure_count);
+  for (auto force = first_held; force != solution.forces.end(); ++force) {
+    motion.held.push_back(-*force);
   }
-  solution.forces.resize(closures);
+  solution.forces.erase(first_held, solution.forces.end());
+  motion.loads = std::move(loads.on_bodies);
   motion.closure_forces = std::move(solution.forces);
   motion.accelerations = std::move(solution.accelerations);
   motion.pivots = std::move(solution.pivots);

@@ -66,7 +66,11 @@ S calcForceOutput(const OutputSpec& spec, const SystemNames& names, const NamedV
   const NamedForce& which = names.findForce(*spec.force_of);
   Loads<S> loads = makeLoads<S>(motion.bodies.size(), state.coordinates.size(), state.states.size());
   ForceSum<S, NamedValues<S>> sum(motion.bodies, state.coordinates, motion.rates, state.states, values, loads,
-                                  &state.modes, &motion.held);
+                                  &state.modes);
+  if (which.constraint < 0 && !spec.component) {
+    return calcElementForce(system.elements, which, sum).along +
+           calcHeldForce(system.elements, which, motion.held);
+  }
   const Exerted<S> exerted = which.constraint >= 0 ? calcConstraintForce(system, motion, which.constraint)
                                                    : calcElementForce(system.elements, which, sum);
   return spec.component ? getComponent(exerted.force, exerted.moment, *spec.component) : exerted.along;

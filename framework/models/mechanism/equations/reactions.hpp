@@ -110,6 +110,29 @@ Exerted<S> calcElementForce(const ForceElements<S>& elements, const NamedForce& 
   return sum.takeExerted();
 }
 
+/// The force with which an element that switches holds its coordinate: a stop on which it rests, friction
+/// that sticks; 0 of all others. `held`: of ModelMotion.
+template <class S>
+S calcHeldForce(const ForceElements<S>& elements, const NamedForce& which, const std::vector<S>& held) {
+  const void* wanted = nullptr;
+  int kind = 0;
+  elements.forEachList([&](const auto& list) {
+    if (kind++ == which.kind) {
+      wanted = &list[which.index];
+    }
+  });
+  std::vector<const void*> switching;  // in the order of the modes
+  for (const Stop<S>* stop : listRigidStops(elements)) {
+    switching.push_back(stop);
+  }
+  for (const Friction<S>* friction : listSticking(elements)) {
+    switching.push_back(friction);
+  }
+  const auto mode =
+      static_cast<std::size_t>(std::find(switching.begin(), switching.end(), wanted) - switching.begin());
+  return mode < held.size() ? held[mode] : S(0.0);
+}
+
 /// What a joint exerts on its body: moment and force at the joint's frame on the body, in the axes of the
 /// parent. By Newton and Euler: what the body and all that it carries need for their accelerations beyond
 /// what acts on them. The forces on the joint's coordinates are part of it, as they pass between the same two

@@ -102,7 +102,7 @@ std::vector<Held<S>> listHeld(const ForceElements<S>& elements, const std::vecto
 /// holds nothing. `forces` are those of the closures, then minus those of the switches.
 template <class S>
 ConstrainedMotion<S> solveHeld(LinearSystem<S> equations, std::vector<ClosureTerms<S>> conditions,
-                               const std::vector<Held<S>>& held) {
+                               const std::vector<Prescribed<S>>& known, const std::vector<Held<S>>& held) {
   using namespace program::real;
   const int n = static_cast<int>(equations.right.size());
   std::vector<S> active(conditions.size(), S(1.0));
@@ -110,6 +110,7 @@ ConstrainedMotion<S> solveHeld(LinearSystem<S> equations, std::vector<ClosureTer
     conditions.push_back({S(0.0), S(0.0), one.pair.template makeRow<S>(n)});
     active.push_back(one.active);
   }
+  prescribe(known, conditions);  // once more those of closures, which changes nothing
   const Factors<S> mass = factorize(std::move(equations.matrix), kSingularPivot, equations.right);
   std::vector<S> free = substitute(mass, std::move(equations.right)), excess;
   ClosureResponse<S> response;

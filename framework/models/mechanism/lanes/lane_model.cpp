@@ -75,6 +75,7 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   const RecordedSampling& sampling = recorded.sampling;
   const Symbols output_delays(sampling.delays.begin(), sampling.delays.begin() + sampling.output_delay_count);
   model.loops = recorded.loops;
+  model.prescribed = recorded.prescribed;
   model.pivot_count = static_cast<int>(recorded.rest_pivots.size());
   model.problem = lanes::makeProblem(
       recorder,

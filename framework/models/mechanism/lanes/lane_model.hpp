@@ -16,13 +16,15 @@ struct LaneModel {
   RecordedExcitation excitation;  ///< its symbols are not to be used
   RecordedSampling sampling;      ///< likewise
   lanes::Problem problem;         ///< the motion and its outputs
-  program::Program start;  ///< initial states, events, delays; with directions their derivatives, one by one
+  program::Program start;  ///< initial states (of the first phase's inputs), events, delays; with directions
+                           ///< their derivatives, one by one
   program::Program rest;   ///< residuals [rest_rates; rest_closures], rest_pivots, d residuals / d
                            ///< [coordinates; states of first order] by columns; with directions also d
                            ///< residuals / d parameters by columns
   program::Program linearization;
   int directions = 0;                      ///< 0, or all parameters
   int pivot_count = 0;                     ///< of rest_pivots
+  std::vector<int> prescribed;             ///< coordinates that move as signals say
   std::shared_ptr<const LoopModel> loops;  ///< null: none
 
   int getFirstOrderCount() const { return counts.states - 2 * coordinate_count - hidden_count; }

@@ -20,8 +20,17 @@ MatrixXd LaneModes::calcMatrix(const Eigen::Ref<const VectorXd>& parameters, con
   MatrixXd matrix = MatrixXd::Zero(all, all);
   matrix.block(0, n, n, n).setIdentity();
   matrix.bottomRows(all - n) = program_.calc({parameters, states}).reshaped(all - n, all);
-  return assembly_ ? reduceToFreedoms(matrix, assembly_->calcSlopes(parameters, equilibrium.head(n)))
-                   : matrix;
+  if (!assembly_) {
+    return matrix;
+  }
+  const MatrixXd slopes = assembly_->calcSlopes(parameters, equilibrium.head(n));
+  const auto prescribed = static_cast<Eigen::Index>(model_.prescribed.size());
+  MatrixXd conditions = MatrixXd::Zero(slopes.rows() + prescribed, n);
+  conditions.topRows(slopes.rows()) = slopes;
+  for (Eigen::Index i = 0; i < prescribed; ++i) {
+    conditions(slopes.rows() + i, model_.prescribed[static_cast<std::size_t>(i)]) = 1.0;
+  }
+  return reduceToFreedoms(matrix, conditions);
 }
 
 VectorXd LaneModes::calc(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& equilibrium,

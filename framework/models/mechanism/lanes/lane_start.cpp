@@ -26,13 +26,26 @@ LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const Vector
 void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
   // the values, then their derivatives with respect to each parameter
   const MatrixXd all =
-      start_.calc({parameters})
+      calcStart(parameters)
           .reshaped(model_.start.outputs.size() / (1 + model_.directions), 1 + model_.directions);
   sample.parameters.assign(parameters.begin(), parameters.end());
   fillInitial(parameters, all.topRows(model_.counts.states), sample);
   const Index delays = static_cast<Index>(model_.sampling.delays.size());
   const Index events = all.rows() - model_.counts.states - delays;
   fillTimes({all.middleRows(model_.counts.states, events), all.bottomRows(delays)}, sample);
+}
+
+VectorXd LaneStart::calcStart(const Parameters& parameters) {
+  ProgramInputs inputs{parameters};
+  inputs.phase_inputs = VectorXd::Zero(model_.counts.phase_inputs);
+  const VectorXd values = start_.calc(inputs);
+  if (model_.prescribed.empty()) {
+    return values;
+  }
+  const auto events = values.segment(model_.counts.states, model_.excitation.events.size());
+  fillPhaseInputs(model_.excitation, std::vector<double>(events.begin(), events.end()), 0.0,
+                  inputs.phase_inputs.data());
+  return start_.calc(inputs);
 }
 
 /// Thousands of instants are the same for most samples.
@@ -50,9 +63,11 @@ void LaneStart::fillTimes(const SampleTimes& times, lanes::Sample& sample) {
 }
 
 void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes::Sample& sample) {
+  const MatrixXd given = states;
   if (box_center_.size() > 0) {
     states.setZero();
     states.col(0) = complete(box_center_);
+    startPrescribed(given, states);
     assemble(parameters, states);
   } else if (spec_.initial.equilibrium) {
     rest_.setParameters(parameters);
@@ -69,10 +84,21 @@ void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes
     if (assembly_) {
       assembly_->requireClosed(parameters, equilibrium.head(model_.coordinate_count));
     }
+    if (!model_.prescribed.empty()) {
+      startPrescribed(given, states);
+      assemble(parameters, states);
+    }
   } else {
     assemble(parameters, states);
   }
   sample.initial.assign(states.data(), states.data() + states.size());
+}
+
+void LaneStart::startPrescribed(const MatrixXd& given, MatrixXd& states) const {
+  for (const int coordinate : model_.prescribed) {
+    states.row(coordinate) = given.row(coordinate);
+    states.row(model_.coordinate_count + coordinate) = given.row(model_.coordinate_count + coordinate);
+  }
 }
 
 VectorXd LaneStart::complete(const VectorXd& equilibrium) const {
@@ -97,7 +123,7 @@ MatrixXd LaneStart::takeEquilibrium(const MatrixXd& states) const {
 
 VectorXd LaneStart::solveEquilibrium(const Parameters& parameters) {
   rest_.setParameters(parameters);
-  MatrixXd states = start_.calc({parameters}).head(model_.counts.states);
+  MatrixXd states = calcStart(parameters).head(model_.counts.states);
   if (box_center_.size() > 0) {
     states = complete(box_center_);
   }

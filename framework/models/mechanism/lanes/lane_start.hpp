@@ -26,10 +26,15 @@ class LaneStart {
   Eigen::VectorXd solveEquilibrium(const Eigen::Ref<const Eigen::VectorXd>& parameters);
 
  private:
+  /// Values of the start program, where what is prescribed is as in the first phase.
+  Eigen::VectorXd calcStart(const Eigen::Ref<const Eigen::VectorXd>& parameters);
   void fillInitial(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd states,
                    lanes::Sample& sample);
   /// Where the file's initial coordinates leave loops open, closes them; and rates become speeds.
   void assemble(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd& states);
+  /// From an equilibrium on, what is prescribed moves as the file's start `given` says, and with it what
+  /// loops tie to it.
+  void startPrescribed(const Eigen::MatrixXd& given, Eigen::MatrixXd& states) const;
   /// Rows [coordinates; states of first order] of all states.
   Eigen::MatrixXd takeEquilibrium(const Eigen::MatrixXd& states) const;
   void fillTimes(const SampleTimes& times, lanes::Sample& sample);

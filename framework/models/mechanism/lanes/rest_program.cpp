@@ -14,6 +14,7 @@ RestProgram::RestProgram(const LaneModel& model)
       residuals_(count_ + model.getClosureCount()),
       pivots_(model.pivot_count),
       directions_(model.directions),
+      prescribed_(model.prescribed),
       singular_(getSingularReason(model)),
       program_(model.rest) {}
 
@@ -26,6 +27,13 @@ VectorXd RestProgram::calcAll(const VectorXd& equilibrium) {
   return all;
 }
 
+void RestProgram::hold(const VectorXd& all, MatrixXd& jacobian) const {
+  holdIndifferentStates(all.head(count_), coordinates_, jacobian);
+  for (const int coordinate : prescribed_) {
+    jacobian.col(coordinate).setZero();
+  }
+}
+
 VectorXd RestProgram::calc(const VectorXd& equilibrium) {
   return calcAll(equilibrium).head(residuals_);
 }
@@ -33,7 +41,7 @@ VectorXd RestProgram::calc(const VectorXd& equilibrium) {
 MatrixXd RestProgram::calcJacobian(const VectorXd& equilibrium) {
   const VectorXd all = calcAll(equilibrium);
   MatrixXd jacobian = all.segment(residuals_ + pivots_, residuals_ * count_).reshaped(residuals_, count_);
-  holdIndifferentStates(all.head(count_), coordinates_, jacobian);
+  hold(all, jacobian);
   return jacobian;
 }
 
@@ -42,7 +50,7 @@ MatrixXd RestProgram::calcSlopes(const VectorXd& equilibrium, const MatrixXd& st
   MatrixXd jacobian = all.segment(residuals_ + pivots_, residuals_ * count_).reshaped(residuals_, count_);
   const MatrixXd forced = all.tail(residuals_ * directions_).reshaped(residuals_, directions_);
   const MatrixXd changes = forced + jacobian * start_slopes;
-  holdIndifferentStates(all.head(count_), coordinates_, jacobian);
+  hold(all, jacobian);
   return start_slopes - linalg::fitLinear(jacobian, changes).coefficients;
 }
 

@@ -22,10 +22,13 @@ class RestProgram : public RestAccelerations {
 
  private:
   Eigen::VectorXd calcAll(const Eigen::VectorXd& equilibrium);
+  /// What does not move towards an equilibrium has no column: what is prescribed, and indifferent states.
+  void hold(const Eigen::VectorXd& all, Eigen::MatrixXd& jacobian) const;
 
   Eigen::Index coordinates_, count_;  ///< count_: with the states of first order
   Eigen::Index residuals_;            ///< with the conditions of loops
   Eigen::Index pivots_, directions_;
+  std::vector<int> prescribed_;
   const char* singular_;
   Eigen::VectorXd parameters_;
   SingleProgram program_;

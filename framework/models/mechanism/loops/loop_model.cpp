@@ -6,6 +6,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/loops/closure_program.hpp"
+#include "framework/models/mechanism/sampled_keys.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -60,17 +61,24 @@ class LoopPlanner {
         program_(model),
         parameters_(parameters),
         rows_(listAll(static_cast<Index>(model.labels.size()))),
-        coordinates_(listAll(model.coordinates)) {}
+        coordinates_(listAll(model.coordinates)) {
+    for (const MotionSpec& motion : context.model.system.motions) {
+      const int moved = context.names.findCoordinate(motion.coordinate);
+      coordinates_.erase(std::find(coordinates_.begin(), coordinates_.end(), moved));
+      prescribed_ = &motion;
+    }
+  }
 
   LoopPlan plan(const VectorXd& guess) {
     const InitialSpec& initial = context_.model.initial;
     const std::vector<int> released = listReleased({&initial.coordinates});
+    requireFree(guess);
     const VectorXd closed = assemble(guess, released);
-    const MatrixXd slopes = program_.calc(parameters_, closed).slopes;
+    const MatrixXd slopes = calcFreeSlopes(closed);
     LoopPlan plan;
     plan.rows = pickIndependent(slopes.transpose(), rows_, true);
     requireRegular(closed, plan.rows);
-    const MatrixXd kept = slopes(plan.rows, coordinates_);
+    const MatrixXd kept = slopes(plan.rows, Eigen::all);
     plan.dependent = pickIndependent(kept, released, false);
     plan.dependent_rates =
         pickIndependent(kept, listReleased({&initial.speeds, &initial.coordinates}), false);
@@ -78,6 +86,30 @@ class LoopPlanner {
   }
 
  private:
+  /// Derivatives of the conditions with respect to what is not prescribed; 0 for what is.
+  MatrixXd calcFreeSlopes(const VectorXd& at) {
+    MatrixXd slopes = program_.calc(parameters_, at).slopes;
+    for (Index i = 0; i < slopes.cols(); ++i) {
+      if (std::find(coordinates_.begin(), coordinates_.end(), i) == coordinates_.end()) {
+        slopes.col(i).setZero();
+      }
+    }
+    return slopes;
+  }
+
+  /// Conditions that only prescribed coordinates could meet break as soon as these move.
+  void requireFree(const VectorXd& guess) {
+    const auto count = [&](const MatrixXd& slopes) {
+      return pickIndependent(slopes.transpose(), rows_, true).size();
+    };
+    if (prescribed_ != nullptr &&
+        count(program_.calc(parameters_, guess).slopes) > count(calcFreeSlopes(guess))) {
+      throw SimulationFailure("the constraints leave no coordinate free to follow '" +
+                                  prescribed_->coordinate.text + "', whose motion is prescribed",
+                              prescribed_->coordinate.where);
+    }
+  }
+
   /// Coordinates in the order in which they are let go: those not given, then those given last.
   std::vector<int> listReleased(const std::vector<const std::vector<NamedExpression>*>& given) const {
     std::vector<int> held;
@@ -88,14 +120,17 @@ class LoopPlanner {
     }
     std::vector<int> released = coordinates_;
     for (auto one = held.rbegin(); one != held.rend(); ++one) {
-      released.erase(std::find(released.begin(), released.end(), *one));
-      released.push_back(*one);
+      const auto found = std::find(released.begin(), released.end(), *one);
+      if (found != released.end()) {  // else it is prescribed
+        released.erase(found);
+        released.push_back(*one);
+      }
     }
     return released;
   }
 
   VectorXd assemble(const VectorXd& guess, const std::vector<int>& released) {
-    const MatrixXd slopes = program_.calc(parameters_, guess).slopes;
+    const MatrixXd slopes = calcFreeSlopes(guess);
     const VectorXd closed =
         closeLoops(program_, parameters_, guess, rows_, pickIndependent(slopes, released, false));
     const ClosureValues at = program_.calc(parameters_, closed);
@@ -127,9 +162,11 @@ class LoopPlanner {
     if (rows.size() == rows_.size()) {
       return;
     }
-    const MatrixXd slopes = program_.calc(parameters_, closed).slopes;
-    const VectorXd some =
-        VectorXd::NullaryExpr(closed.size(), [](Index i) { return std::cos(1.0 + static_cast<double>(i)); });
+    const MatrixXd slopes = calcFreeSlopes(closed);
+    VectorXd some = VectorXd::Zero(closed.size());
+    for (const int i : coordinates_) {
+      some[i] = std::cos(1.0 + i);
+    }
     const VectorXd free = some - linalg::solveMinimumNorm(slopes, slopes * some);
     if (free.norm() <= kIndependentPart * some.norm()) {
       return;  // nothing can move
@@ -138,7 +175,8 @@ class LoopPlanner {
         closeLoops(program_, parameters_, closed + kMove * free.normalized(), rows, coordinates_);
     const ClosureValues at = program_.calc(parameters_, moved);
     const std::string open = describeOpenLoops(model_, at);
-    if (!open.empty() || pickIndependent(at.slopes.transpose(), rows_, true).size() > rows.size()) {
+    if (!open.empty() ||
+        pickIndependent(calcFreeSlopes(moved).transpose(), rows_, true).size() > rows.size()) {
       throw SimulationFailure(
           "the machine starts in a singular configuration, in which a loop could go on in several ways "
           "(links "
@@ -152,8 +190,29 @@ class LoopPlanner {
   const LoopModel& model_;
   ClosureProgram program_;
   const VectorXd parameters_;
-  const std::vector<int> rows_, coordinates_;  ///< all of them
+  const std::vector<int> rows_;             ///< all of them
+  std::vector<int> coordinates_;            ///< but those that are prescribed
+  const MotionSpec* prescribed_ = nullptr;  ///< one of them, if there are any
 };
+
+}  // namespace
+
+namespace {
+
+/// The file's initial coordinates, and those that are prescribed as their signals start.
+VectorXd calcGuess(ModelContext& context) {
+  VectorXd guess = calcInitialValues(context).coordinates;
+  std::vector<double> signals(context.model.excitation.size());
+  context.excitation.update(context.numbers);
+  context.excitation.beginPhase(0.0);
+  context.excitation.calcValues(0.0, signals);
+  context.excitation.mute();
+  for (const MotionSpec& motion : context.model.system.motions) {
+    guess[context.names.findCoordinate(motion.coordinate)] =
+        signals[findSignal(context.model, motion.follows)];
+  }
+  return guess;
+}
 
 }  // namespace
 
@@ -166,7 +225,7 @@ std::shared_ptr<const LoopModel> makeLoopModel(ModelContext& context) {
     context.numbers.update(center);
     checkNumbers(context);
     auto loops = std::make_shared<LoopModel>(recordLoops(context.model, context.names));
-    loops->plan = LoopPlanner(context, *loops, center).plan(calcInitialValues(context).coordinates);
+    loops->plan = LoopPlanner(context, *loops, center).plan(calcGuess(context));
     return loops;
   } catch (const SimulationFailure& failure) {
     const std::string place = toString(failure.getWhere());

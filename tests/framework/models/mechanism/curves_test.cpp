@@ -67,7 +67,7 @@ TEST(Curves, HaveExactDerivativesWithRespectToTheirKnots) {
     model.simulation.relative_tolerance = 1e-9;
     MatrixXd by_simbody(18, 1);
     MultibodySimulator(model, times).simulate(point, by_simbody, &status);
-    EXPECT_LT((by_simbody - response).cwiseAbs().maxCoeff(), 1e-7);
+    EXPECT_LT((by_simbody - response).cwiseAbs().maxCoeff(), 1e-6);  // of some radians, past 16 knots
   }
 }
 

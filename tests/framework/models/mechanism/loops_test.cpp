@@ -301,6 +301,122 @@ TEST(Loops, HaveExactDerivativesOnBalls) {
   expectExactLoopDerivatives(model, Eigen::Vector2d(0.33, 0.2));
 }
 
+/// The slider-crank with its crank's angle prescribed: 0.4 + swing sin(2 pi 1.3 t), from within its motion.
+ModelSpec makeDrivenSliderCrank() {
+  ModelSpec model = makeSliderCrank();
+  model.parameters = {parameter("swing", 0.5, 0.7), parameter("l", 0.2, 0.24)};
+  model.system.elements.get<ForceLaw>().clear();
+  model.system.constraints[0].coincident->from.point = ex3("l", "0", "0");
+  SignalSpec drive;
+  drive.name = name("drive");
+  drive.sines.resize(2);
+  drive.sines[0].amplitude = ex("swing");
+  drive.sines[0].frequency = ex("1.3");
+  drive.sines[1].amplitude = ex("0.4");  // constant
+  drive.sines[1].frequency = ex("1e-12");
+  drive.sines[1].phase = ex("pi / 2");
+  model.excitation = {drive};
+  model.system.motions = {{name("a"), name("drive")}};
+  model.initial.coordinates = {value("b", "-0.2"), value("x", "0.3")};
+  model.initial.speeds.clear();
+  return model;
+}
+
+TEST(Loops, FollowAPrescribedMotion) {
+  ModelSpec model = makeDrivenSliderCrank();
+  model.simulation.engine = Engine::kLanes;
+  const Eigen::Vector2d point(0.6, 0.22);
+  OutputSpec torque;
+  torque.name = name("torque");
+  torque.reaction = ReactionSpec{name("crank"), ForceComponent::kMomentZ};
+  model.outputs.push_back(torque);
+  const MatrixXd response = runModel(model, kLoopTimes, point);
+  for (Index i = 0; i < kLoopTimes.size(); ++i) {
+    const double angle = 0.4 + 0.6 * std::sin(2.0 * EIGEN_PI * 1.3 * kLoopTimes[i]),
+                 y = 0.08 * std::sin(angle);
+    EXPECT_NEAR(response(i, 0), angle, 1e-12);
+    EXPECT_NEAR(response(i, 2), 0.08 * std::cos(angle) + std::sqrt(0.22 * 0.22 - y * y), 1e-9);
+  }
+  // the torque that such a motion takes, given to the crank that is free, moves it in the same way; not for
+  // long, since the spring pushes a free crank away from its dead centre
+  ModelSpec free = model;
+  free.system.motions.clear();
+  const VectorXd times = VectorXd::LinSpaced(801, 0.0, 0.4);
+  SignalSpec signal;
+  signal.name = name("torque");
+  const MatrixXd recorded = runModel(model, times, point);
+  signal.tables = {tableOf(std::vector<double>(times.begin(), times.end()),
+                           std::vector<double>(recorded.col(3).begin(), recorded.col(3).end()),
+                           TableInterpolation::kCubic)};
+  free.excitation = {signal};
+  free.system.elements.get<Damper>().clear();  // the reaction has the damper's part
+  free.system.elements.get<ForceLaw>().push_back(law("a", "torque"));
+  free.initial.coordinates.insert(free.initial.coordinates.begin(), value("a", "0.4"));
+  free.initial.speeds = {value("a", "0.6 * 2 * pi * 1.3")};
+  free.outputs.resize(3);
+  free.simulation.duration = 0.35;
+  const VectorXd early = VectorXd::LinSpaced(8, 0.0, 0.35);
+  EXPECT_LT((runModel(free, early, point) - runModel(model, early, point).leftCols(3)).cwiseAbs().maxCoeff(),
+            1e-8);
+}
+
+TEST(Loops, HaveExactDerivativesBehindAPrescribedMotion) {
+  ModelSpec model = makeDrivenSliderCrank();
+  OutputSpec force;
+  force.name = name("force");
+  model.system.constraints[0].name = name("loop");
+  force.force_of = name("loop");
+  force.component = ForceComponent::kForceX;
+  model.outputs = {coordinateOutput("x"), speedOutput("x"), force};
+  expectExactLoopDerivatives(model, Eigen::Vector2d(0.61, 0.225));
+  model.initial.equilibrium.emplace();
+  model.initial.equilibrium->at = EquilibriumAt::kSample;
+  expectExactLoopDerivatives(model, Eigen::Vector2d(0.61, 0.225));
+}
+
+TEST(Loops, MustLeaveSomethingFreeToFollowAMotion) {
+  ModelSpec model = makeDrivenSliderCrank();
+  SignalSpec still;
+  still.name = name("still");
+  still.sines.resize(1);
+  still.sines[0].amplitude = ex("0.2");
+  still.sines[0].frequency = ex("1e-12");
+  still.sines[0].phase = ex("pi / 2");
+  model.excitation.push_back(still);
+  model.system.motions.push_back({name("x"), name("still")});
+  model.system.motions.push_back({name("b"), name("drive")});
+  EXPECT_FALSE(getError(model).empty());
+  model = makeDrivenSliderCrank();
+  model.system.constraints = {gear("x", "a", "0.1")};
+  model.system.motions.push_back({name("x"), name("drive")});
+  model.initial.coordinates.clear();
+  EXPECT_NE(getError(model).find("leave no coordinate free"), std::string::npos) << getError(model);
+}
+
+TEST(Motion, RestsWhereItsSignalStarts) {
+  // a mass hangs by a spring on a table: at rest m g / k below it, wherever the table is
+  ModelSpec model = makeModel(1.0);
+  model.system.gravity = ex3("-9.81", "0", "0");
+  model.system.bodies = {body("table", "1", kOrigin, kOrigin, joint(JointType::kSlider, {"table"})),
+                         body("mass", "2", kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};
+  model.system.elements.get<TwoPointSpring>() = {
+      {station("table", kOrigin), station("mass", ex3("1", "0", "0")), ex("400"), ex("1")}};
+  SignalSpec signal;
+  signal.name = name("z");
+  signal.sines.resize(1);
+  signal.sines[0].amplitude = ex("0.03");
+  signal.sines[0].frequency = ex("1e-12");
+  signal.sines[0].phase = ex("pi / 2");
+  model.excitation = {signal};
+  model.system.motions = {{name("table"), name("z")}};
+  model.initial.equilibrium.emplace();
+  model.initial.equilibrium->at = EquilibriumAt::kSample;
+  model.outputs = {coordinateOutput("x"), coordinateOutput("table")};
+  const MatrixXd response = runModel(model, VectorXd::LinSpaced(3, 0.0, 1.0));
+  EXPECT_LT((response.col(0).array() - (0.03 - 2.0 * 9.81 / 400.0)).abs().maxCoeff(), 1e-9);
+  EXPECT_LT((response.col(1).array() - 0.03).abs().maxCoeff(), 1e-12);
+}
+
 TEST(Loops, TakePartInEquilibriaAndModes) {
   ModelSpec model = makeFourBar();
   model.system.elements.get<Damper>().clear();

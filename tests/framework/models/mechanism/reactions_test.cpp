@@ -167,7 +167,7 @@ TEST(Forces, OfElementsOnCoordinatesAreTheirLaws) {
   Stop<Expression> stop;
   stop.coordinate = name("x");
   stop.below = ex("0.5");
-  stop.law.stiffness = ex("40");
+  stop.stiffness = ex("40");
   stop.name = name("stop");
   model.system.elements.get<Stop>() = {stop};
   const std::string v = "(x_dot - y_dot)";

@@ -55,6 +55,7 @@ class ModelRecorder {
     recorded.initial = recordInitial();
     recorded.initial.resize(recorded.derivatives.size(), Symbol(0.0));
     recorded.loops = loops_;
+    recorded.prescribed = findPrescribed();
     recorded.recorder = std::move(recorder_);
     return recorded;
   }
@@ -93,12 +94,17 @@ class ModelRecorder {
     recorded.derivatives = motion.rates;
     append(motion.accelerations, recorded.derivatives);
     append(motion.state_rates, recorded.derivatives);
-    for (const int i : findPrescribed()) {  // what the signals say is not integrated
-      recorded.derivatives[i] = recorded.derivatives[system_.coordinate_count + i] = 0.0;
-    }
+    holdPrescribed(recorded.derivatives);
     recorded.pivots = motion.pivots;
     if (!system_.closures.empty()) {
       recordProjected(recorded);
+    }
+  }
+
+  /// What the signals say is not integrated.
+  void holdPrescribed(Symbols& derivatives) const {
+    for (const int i : findPrescribed()) {
+      derivatives[i] = derivatives[system_.coordinate_count + i] = 0.0;
     }
   }
 
@@ -115,10 +121,12 @@ class ModelRecorder {
     for (std::size_t i = 0; i < given.size(); ++i) {
       recorded.relaxed[i] += kRelaxations / model_.simulation.duration * (recorded.projected[i] - given[i]);
     }
+    holdPrescribed(recorded.relaxed);
   }
 
   ModelState<Symbol> project(ModelState<Symbol> state, int rounds) {
-    auto [coordinates, speeds] = equations::project(system_, state.coordinates, state.speeds, rounds);
+    auto [coordinates, speeds] =
+        equations::project(system_, state.coordinates, state.speeds, rounds, findPrescribed());
     state.coordinates = std::move(coordinates);
     state.speeds = std::move(speeds);
     return state;
@@ -294,6 +302,11 @@ class ModelRecorder {
     Symbols rates = calcNamed(model_.initial.speeds);
     if (model_.initial.equilibrium) {
       rates.assign(rates.size(), Symbol(0.0));
+    }
+    for (const MotionSpec& motion : model_.system.motions) {
+      const int i = names_.findCoordinate(motion.coordinate);
+      coordinates[i] = signals_[findSignal(model_, motion.follows)];
+      rates[i] = program::calcTangents({coordinates[i]}, {{recorder_->time(), 1.0}})[0];
     }
     append(loops_ ? rates : equations::calcSpeeds(system_, coordinates, rates), coordinates);
     for (const StateSpec& state : model_.system.states) {

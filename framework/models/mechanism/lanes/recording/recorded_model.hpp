@@ -30,8 +30,9 @@ struct RecordedModel {
   Symbols pivots;             ///< not positive where the mass matrix or a loop is singular
   RecordedSampling sampling;  ///< with the outputs; only the rates of its states are also in `derivatives`
   RecordedEvents events;
-  Symbols initial;     ///< states at t = 0; of parameters alone; without equilibrium. With loops as the
-                       ///< file gives them, and rates of coordinates in the place of speeds: Assembly's
+  Symbols initial;     ///< states at t = 0; of parameters alone, and what is prescribed of the first phase's
+                       ///< inputs; without equilibrium. With loops as the file gives them, and rates of
+                       ///< coordinates in the place of speeds: Assembly's
   Symbols rest_rates;  ///< at rest and t = 0 without excitation: accelerations, then rates of the states of
                        ///< first order
   Symbols rest_closures;  ///< distances from the independent conditions of loops, as accelerations
@@ -39,6 +40,7 @@ struct RecordedModel {
   /// d/dt of [coordinates; their rates; states of first order] linearised around rest, at t = 0 without
   /// excitation: all rows but those of the coordinates, column by column, at speeds 0.
   Symbols linearization;
+  std::vector<int> prescribed;  ///< coordinates that move as signals say; at the start in `initial`
   std::shared_ptr<const LoopModel> loops;  ///< null: none
   Symbols projected;                       ///< with loops: the states nearest that meet the conditions
   Symbols relaxed;  ///< with loops: derivatives that lead to the conditions, for implicit integration
