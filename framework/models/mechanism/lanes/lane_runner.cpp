@@ -156,7 +156,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
       checks_->check(point);
       fillModes(column, point);
       start_.fill(point, sample);
-      requireWithinStops(*context_,
+      requireWithinStops(checks_->updContext(),
                          Eigen::Map<const VectorXd>(sample.initial.data(), model_.coordinate_count));
     } catch (const SimulationFailure& failure) {
       return failure.what();

@@ -20,6 +20,9 @@ class NumberChecks {
   /// that does.
   void check(const Eigen::Ref<const Eigen::VectorXd>& point);
 
+  /// With the numbers of the parameter set checked last.
+  ModelContext& updContext() { return context_; }
+
  private:
   struct VaryingCheck {
     NumberCheck all;

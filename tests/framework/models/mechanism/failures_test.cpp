@@ -35,7 +35,7 @@ TEST(Failures, AreThoseOfNumbersThatFollowParameters) {
   model.constants = {constant("fixed", "1.2"), constant("rest", "m - fixed"), constant("soft", "1 / c")};
   model.system.bodies[0].mass = ex("rest");
   model.system.elements.get<Spring>() = {{name("x"), ex("fixed / (k - 12)"), ex("0")}};
-  model.parameters[0].bounds = {1.5, 2.5};
+  model.parameters[0].bounds = {1.5, 2.5, {}};
   EXPECT_EQ(getReason(model, Eigen::Vector3d(1.0, 10.0, 0.5)),
             "body 'block': mass = -0.2 kg must be positive");
   EXPECT_EQ(getReason(model, Eigen::Vector3d(2.0, 12.0, 0.5)),
