@@ -79,7 +79,7 @@ class FieldCheck {
     describe(*this, const_cast<T&>(described));
   }
 
-  /// Throws ExperimentError for a name that is no coordinate.
+  /// Throws ExperimentError for a name that is not a coordinate.
   const Coordinate& find(const Name& name) const;
 
  private:

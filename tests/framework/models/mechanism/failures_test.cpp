@@ -109,12 +109,15 @@ TEST(Failures, ForceThatBecomesNonFiniteIsReported) {
   EXPECT_EQ(getReason(model, Eigen::Vector3d(1.0, 10.0, 0.1)), "state became non-finite at t = 0.5 s");
 }
 
+const std::string kTooLargeMoment =
+    "must not exceed the sum of the other two (of a body that turns about one axis alone, only the moment J "
+    "about that axis acts: write [J, J, J])";
+
 TEST(Failures, InertiaMustBeThatOfARealBody) {
   ModelSpec model = makeOscillator();
   model.system.bodies[0].inertia.moments = ex3("c", "1", "1");
-  EXPECT_EQ(
-      getReason(model, Eigen::Vector3d(1.0, 10.0, 3.0)),
-      "body 'block': inertia: largest principal moment = 3 kg m2 must not exceed the sum of the other two");
+  EXPECT_EQ(getReason(model, Eigen::Vector3d(1.0, 10.0, 3.0)),
+            "body 'block': inertia: largest principal moment = 3 kg m2 " + kTooLargeMoment);
   model.system.bodies[0].inertia.moments = ex3("1", "1", "1.5");
   model.system.bodies[0].inertia.products = ex3("c - 0.5", "0", "0");
   EXPECT_EQ(getReason(model, Eigen::Vector3d(1.0, 10.0, 1.7)),
@@ -251,8 +254,8 @@ TEST(WrongInput, WhatCannotExistAtTheBoxCenterIsNamedWithItsPlace) {
   model.system.bodies[0].inertia.moments = {Expression{"3", at(7, "system.bodies.block.inertia")},
                                             Expression{"1", {}}, Expression{"1", {}}};
   EXPECT_EQ(getError(model), "cart.yaml:7:12: system.bodies.block.inertia" + centre +
-                                 "body 'block': inertia: largest principal moment = 3 kg m2 must not exceed "
-                                 "the sum of the other two");
+                                 "body 'block': inertia: largest principal moment = 3 kg m2 " +
+                                 kTooLargeMoment);
   model.system.bodies[0].inertia.moments = kOrigin;
   model.constants = {{name("n"), {"1 / (m - 1)", at(3, "constants.n")}, "", "", {}}};
   EXPECT_EQ(getError(model), "cart.yaml:3:12: constants.n" + centre + "constant: n = inf must be finite");
