@@ -49,12 +49,12 @@ double calcLocalFactor(const smooth_process& process, const double* ratios, cons
 
 /// J'J (u x u) for J of r x u.
 void calcInformation(int r, int u, const double* jacobian, double* information);
-/// What a normal prior draws x (u) with, over 3: its information over 3 (relative, u x u) times the offset of x
-/// from its mean; 1 is the relative information of the box.
+/// What a normal prior draws x (u) with, over 3: its information over 3 (relative, u x u) times the offset of
+/// x from its mean; 1 is the relative information of the box.
 void calcPull(int u, const double* relative, const double* mean, const double* x, double* offset,
               double* pull);
-/// The damped step of least squares, in place of J'residual, under a prior of that information and pull; false
-/// where its information is not positive definite. small: u x u.
+/// The damped step of least squares, in place of J'residual, under a prior of that information and pull;
+/// false where its information is not positive definite. small: u x u.
 bool solveStep(int u, const double* information, const double* relative, const double* pull, double damping,
                double* small, double* step);
 /// Whether chi-square is four standard deviations above its mean: one in 10000 by chance.
