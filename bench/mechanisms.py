@@ -38,7 +38,7 @@ SHOWS = {
     "mechanisms/slider_crank": "A closed loop, assembled anew for each sample; the crank's angle tells what the piston weighs.",
     "mechanisms/stick_slip": "Sticking and slipping by a bristle: 250 simulations do not teach when it slips, the simulator knows.",
     "mechanisms/imu_arm": "No encoder: accelerometer and gyroscope in their own frame, at a place and with a zero that nobody knows.",
-    "mechanisms/motor_curve": "A static curve of six knots, beside inertia and friction: the known load gives the scale.",
+    "mechanisms/motor_curve": "A static curve of six unknown knots, beside inertia and friction: the known load gives the scale.",
 }
 
 
