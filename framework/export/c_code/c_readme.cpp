@@ -32,7 +32,7 @@ std::size_t countSearch(const CSource& source) {
   const std::size_t metric = 4 * r + 2 * r * u + r * (r + 1) / 2 + 1 + u * u + u + m + w + 1;
   const std::size_t minima = 4 * (3 * u + 1 + 3 * u * u + r + 1) + 1;
   return processes + metric + minima + u + size("PARAMETERS") + r + u + u + u * u + u * (u + 3) + u * u +
-         2 * u;
+         4 * u;
 }
 
 std::string makeParameterTable(const std::vector<ParameterSpec>& parameters) {
