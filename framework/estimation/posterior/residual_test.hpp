@@ -28,8 +28,8 @@ constexpr double kMismatchLevel = 0.01;
 
 /// residual: whitened, one for each of `infos`; degrees: of freedom of its sum of squares. Whiteness is
 /// tested within each output whose samples have times, over up to ten lags, where there are at least 20
-/// samples; the parameters that were fitted make neighbours a little less alike, so that the test is on the
-/// safe side.
+/// samples and the residual is not below a hundredth of the noise; the parameters that were fitted make
+/// neighbours a little less alike, so that the test is on the safe side.
 ResidualTest testResidual(const Eigen::VectorXd& residual, double degrees,
                           const std::vector<FeatureInfo>& infos);
 

@@ -55,6 +55,12 @@ TEST(ResidualTest, FindsErrorsThatDependOnTheOnesBefore) {
             0.95);
 }
 
+TEST(ResidualTest, MindsNoColourOfWhatIsFarBelowTheNoise) {
+  const VectorXd drift = VectorXd::LinSpaced(kSamples, -1.0, 1.0);
+  EXPECT_GT(testResidual(1e-3 * drift, kSamples, makeInfos()).calcPValue(), 0.99);
+  EXPECT_LT(testResidual(0.1 * drift, kSamples, makeInfos()).calcPValue(), 1e-6);
+}
+
 TEST(ResidualTest, FindsASpikeAndNamesIt) {
   VectorXd residual = drawNoise(1);
   residual[77] = 7.0;
