@@ -51,6 +51,9 @@ TrainedFile readTrainedFile(const std::filesystem::path& path, Hdf5Seal seal) {
   stored.model.map = loadEstimator(file.readAttribute(kMap, "kind"), file, kMap);
   if (file.contains(kTrust)) {
     stored.model.trust = readTrustModel(file, kTrust, stored.model.map->findForward());
+    if (stored.model.trust->unknown < stored.model.map->getResidualCorrelation().rows()) {
+      throw std::runtime_error(path.string() + ": " + kTrust + " has fewer parameters than " + kMap);
+    }
   }
   const std::vector<std::string> experiment = file.readTexts(kExperiment);
   if (experiment.size() != 1) {

@@ -102,7 +102,7 @@ class RecordedProblem final : public HybridProblem {
 /// A step of Radau IIA costs some ten explicit ones. What needs so many of them is not stiff, but jumps: its
 /// step limit would take minutes to reach.
 int limitImplicitSteps(int explicit_steps) {
-  constexpr int kCost = 10, kEnough = 2000;
+  constexpr int kCost = 10, kEnough = 20000;
   return std::min(explicit_steps, std::max(explicit_steps / kCost, kEnough));
 }
 
