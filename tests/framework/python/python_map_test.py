@@ -174,8 +174,8 @@ class Inferring(TwoBeams):
         frame = self.measurement.to_frame()
         for wrong, text in [
             (frame.drop(columns="theta"), "no column 'theta'"),
-            (frame.assign(y=np.nan), "finite"),
-            (frame[:50], "end"),
+            (frame.assign(y=np.nan), "no sample at any needed time"),
+            (frame.assign(y=np.inf), "finite"),
             ({"t": [[0.0]], "y": [1.0], "theta": [1.0]}, "one dimension"),
             (np.zeros(3), "200 finite numbers"),
             ("missing.csv", "missing.csv"),
@@ -186,6 +186,15 @@ class Inferring(TwoBeams):
             self.map.infer(frame, known={"payload": 1})
         with self.assertRaisesRegex(RuntimeError, "does not exist"):
             twinmap.Map.load("missing")
+
+    def test_samples_that_are_missing_are_left_out(self):
+        frame = self.measurement.to_frame()
+        frame.loc[10:11, "y"] = np.nan
+        estimate = self.map.infer(frame[:50])
+        self.assertEqual((estimate.status, estimate.method), ("ok", "posterior"))
+        self.assertEqual(len(estimate.details["left_out"]), 2)
+        with self.assertRaisesRegex(twinmap.MeasurementError, "finite"):
+            self.map.infer(frame, refine=False)
 
     def test_a_wrong_model_is_noticed(self):
         heavier = self.experiment.override("constants.m1.value=4").simulate(TRUE, noise=True)
