@@ -19,7 +19,11 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws, Sim
 
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
                                            const Eigen::VectorXd& known) {
-  const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
+  return infer(table, start, reader_.readAvailableFeatures(table, start), known);
+}
+
+InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
+                                           const AvailableFeatures& found, const Eigen::VectorXd& known) {
   std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
   if (found.stated.isGiven()) {
     own.emplace(reader_.getExperiment(), reader_.getLayout(), SimulatorRefiner::Model::kTrusted,

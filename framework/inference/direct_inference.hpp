@@ -23,6 +23,9 @@ class DirectInference final : public MeasurementInference {
   /// standard deviations that it states go before the experiment's.
   InferredMeasurement infer(const Table& table, std::optional<double> start,
                             const Eigen::VectorXd& known) override;
+  /// From what the reader found in the table.
+  InferredMeasurement infer(const Table& table, std::optional<double> start, const AvailableFeatures& found,
+                            const Eigen::VectorXd& known);
   /// Cost: that of samplePosterior().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 

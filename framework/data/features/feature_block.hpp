@@ -44,12 +44,16 @@ class FeatureBlock {
                                Eigen::Ref<Eigen::VectorXd> placed) const {
     placed = linear;
   }
-  /// From features (infos x n) to those of the linear form (its infos x n), where there is one.
-  virtual void convertToLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& /*features*/,
-                                   Eigen::Ref<Eigen::MatrixXd> /*linear*/) const {}
+  /// From features (infos x n) to those of the linear form (its infos x n); as they are where there is none.
+  virtual void convertToLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& features,
+                                   Eigen::Ref<Eigen::MatrixXd> linear) const {
+    linear = features;
+  }
   /// And back.
-  virtual void convertFromLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& /*linear*/,
-                                     Eigen::Ref<Eigen::MatrixXd> /*features*/) const {}
+  virtual void convertFromLinearForm(const Eigen::Ref<const Eigen::MatrixXd>& linear,
+                                     Eigen::Ref<Eigen::MatrixXd> features) const {
+    features = linear;
+  }
 
  protected:
   explicit FeatureBlock(std::vector<FeatureInfo> infos) : infos_(std::move(infos)) {}

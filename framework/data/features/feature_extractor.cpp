@@ -35,6 +35,26 @@ Blocks makeBlocks(const ModesFeatureSpec& modes, const ResponseLayout& layout, c
   return {makeModesBlock(modes, layout)};
 }
 
+/// Where the features of a block stand, and those of its linear form (their own where it has none).
+struct BlockRows {
+  Eigen::Index first, count, linear_first, linear_count;
+};
+
+/// Returns how many features the linear form has.
+template <class Function>
+Eigen::Index forEachBlock(const Blocks& blocks, const Function& function) {
+  BlockRows rows{};
+  for (const auto& block : blocks) {
+    const auto linear = block->findLinearForm();
+    rows.count = static_cast<Eigen::Index>(block->getInfos().size());
+    rows.linear_count = static_cast<Eigen::Index>((linear ? linear : block)->getInfos().size());
+    function(*block, rows);
+    rows.first += rows.count;
+    rows.linear_first += rows.linear_count;
+  }
+  return rows.linear_first;
+}
+
 }  // namespace
 
 Eigen::VectorXd collectTimes(const std::vector<FeatureSpec>& features) {
@@ -101,52 +121,29 @@ FeatureExtractor FeatureExtractor::makeLinearForm() const {
 }
 
 Eigen::MatrixXd FeatureExtractor::convertToLinearForm(const Eigen::MatrixXd& features) const {
-  Eigen::MatrixXd converted = features;
-  Eigen::Index from = 0, to = 0;
-  for (const auto& block : blocks_) {
-    const auto linear = block->findLinearForm();
-    const auto rows = static_cast<Eigen::Index>(block->getInfos().size());
-    const auto converted_rows = linear ? static_cast<Eigen::Index>(linear->getInfos().size()) : rows;
-    if (linear) {
-      block->convertToLinearForm(features.middleRows(from, rows), converted.middleRows(to, converted_rows));
-    } else {
-      converted.middleRows(to, rows) = features.middleRows(from, rows);
-    }
-    from += rows;
-    to += converted_rows;
-  }
-  return converted.topRows(to);
+  Eigen::MatrixXd linear(getFeatureCount(), features.cols());
+  const Eigen::Index count = forEachBlock(blocks_, [&](const FeatureBlock& block, const BlockRows& rows) {
+    block.convertToLinearForm(features.middleRows(rows.first, rows.count),
+                              linear.middleRows(rows.linear_first, rows.linear_count));
+  });
+  return linear.topRows(count);
 }
 
 Eigen::MatrixXd FeatureExtractor::convertFromLinearForm(const Eigen::MatrixXd& linear) const {
   Eigen::MatrixXd features(getFeatureCount(), linear.cols());
-  Eigen::Index from = 0, to = 0;
-  for (const auto& block : blocks_) {
-    const auto form = block->findLinearForm();
-    const auto rows = static_cast<Eigen::Index>((form ? form : block)->getInfos().size());
-    const auto places = static_cast<Eigen::Index>(block->getInfos().size());
-    if (form) {
-      block->convertFromLinearForm(linear.middleRows(from, rows), features.middleRows(to, places));
-    } else {
-      features.middleRows(to, places) = linear.middleRows(from, rows);
-    }
-    from += rows;
-    to += places;
-  }
+  forEachBlock(blocks_, [&](const FeatureBlock& block, const BlockRows& rows) {
+    block.convertFromLinearForm(linear.middleRows(rows.linear_first, rows.linear_count),
+                                features.middleRows(rows.first, rows.count));
+  });
   return features;
 }
 
 Eigen::VectorXd FeatureExtractor::placeLinearForm(const Eigen::VectorXd& linear) const {
   Eigen::VectorXd placed = Eigen::VectorXd::Zero(getFeatureCount());
-  Eigen::Index from = 0, to = 0;
-  for (const auto& block : blocks_) {
-    const auto form = block->findLinearForm();
-    const auto rows = static_cast<Eigen::Index>((form ? form : block)->getInfos().size());
-    const auto places = static_cast<Eigen::Index>(block->getInfos().size());
-    block->placeLinearForm(linear.segment(from, rows), placed.segment(to, places));
-    from += rows;
-    to += places;
-  }
+  forEachBlock(blocks_, [&](const FeatureBlock& block, const BlockRows& rows) {
+    block.placeLinearForm(linear.segment(rows.linear_first, rows.linear_count),
+                          placed.segment(rows.first, rows.count));
+  });
   return placed;
 }
 

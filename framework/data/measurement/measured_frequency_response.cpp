@@ -24,12 +24,14 @@ constexpr const char *kReal = "real", *kImaginary = "imaginary", *kMagnitude = "
 
 /// One frequency response, by the features that are its lines: Re and Im, one after the other.
 struct ResponseOfLines {
+  std::string name;  ///< "x/F"
   int output = -1;
   std::string excitation, unit;
   std::vector<Index> real;  ///< features; the next one is the imaginary part
 };
 
-std::vector<ResponseOfLines> collectResponses(const std::vector<FeatureInfo>& infos) {
+std::vector<ResponseOfLines> collectResponses(const ResponseLayout& layout,
+                                              const std::vector<FeatureInfo>& infos) {
   std::vector<ResponseOfLines> responses;
   for (std::size_t i = 0; i + 1 < infos.size(); ++i) {
     const FeatureInfo& info = infos[i];
@@ -40,7 +42,8 @@ std::vector<ResponseOfLines> collectResponses(const std::vector<FeatureInfo>& in
       return response.output == info.output && response.excitation == info.excitation;
     });
     if (found == responses.end()) {
-      responses.push_back({info.output, info.excitation, info.unit, {}});
+      const std::string& output = layout.output_names[static_cast<std::size_t>(info.output)];
+      responses.push_back({output + "/" + info.excitation, info.output, info.excitation, info.unit, {}});
       found = responses.end() - 1;
     }
     found->real.push_back(static_cast<Index>(i));
@@ -53,11 +56,11 @@ std::vector<ResponseOfLines> collectResponses(const std::vector<FeatureInfo>& in
 std::vector<std::string> listPrefixes(const MeasurementSpec& spec, const ResponseLayout& layout,
                                       const std::vector<ResponseOfLines>& all,
                                       const ResponseOfLines& response) {
-  const std::string& output = layout.output_names[static_cast<std::size_t>(response.output)];
-  std::vector<std::string> prefixes{output + "/" + response.excitation + "_"};
+  std::vector<std::string> prefixes{response.name + "_"};
   const auto alike = std::count_if(
       all.begin(), all.end(), [&](const ResponseOfLines& other) { return other.output == response.output; });
   if (alike == 1) {
+    const std::string& output = layout.output_names[static_cast<std::size_t>(response.output)];
     prefixes.push_back(findColumnSpec(spec, output).name + "_");
   }
   if (all.size() == 1) {
@@ -158,10 +161,10 @@ LineColumns findLineColumns(const Table& table, const std::vector<std::string>& 
     }
   }
   const std::string& shown = prefixes.back();
-  throw MeasurementError(fmt::format(
-      "{}: has no columns '{}real' and '{}imaginary', nor '{}magnitude' and "
-      "'{}phase', of the frequency response {}",
-      table.source, shown, shown, shown, shown, prefixes.front().substr(0, prefixes.front().size() - 1)));
+  throw MeasurementError(
+      fmt::format("{}: has no columns '{}real' and '{}imaginary', nor '{}magnitude' and "
+                  "'{}phase', of the frequency response {}",
+                  table.source, shown, shown, shown, shown, response.name));
 }
 
 void readResponseOfLines(const LineColumns& columns, const LineRows& rows,
@@ -183,9 +186,8 @@ void readResponseOfLines(const LineColumns& columns, const LineRows& rows,
     lines.stddevs[real] = lines.stddevs[real + 1] = stddevs[row];
   }
   if (missing > 0) {
-    const FeatureInfo& info = infos[static_cast<std::size_t>(response.real.front())];
-    const std::string name = info.name.substr(3, info.name.find(" at ") - 3);  // of "Re x/F at 5 Hz"
-    lines.remarks.push_back(fmt::format("{} of {} lines of {}", missing, response.real.size(), name));
+    lines.remarks.push_back(
+        fmt::format("{} of {} lines of {}", missing, response.real.size(), response.name));
   }
 }
 
@@ -200,7 +202,7 @@ bool isFrequencyResponse(const Table& table, const std::vector<FeatureInfo>& inf
 std::vector<std::string> listLineColumns(const MeasurementSpec& spec, const ResponseLayout& layout,
                                          const std::vector<FeatureInfo>& infos) {
   std::vector<std::string> names;
-  const std::vector<ResponseOfLines> responses = collectResponses(infos);
+  const std::vector<ResponseOfLines> responses = collectResponses(layout, infos);
   for (const ResponseOfLines& response : responses) {
     for (const std::string& prefix : listPrefixes(spec, layout, responses, response)) {
       for (const char* part : {kReal, kImaginary, kMagnitude, kPhase, kLineStddev}) {
@@ -219,7 +221,7 @@ MeasuredLines readFrequencyResponse(const Table& table, const MeasurementSpec& s
   const LineRows rows(table);
   const auto count = static_cast<Index>(infos.size());
   MeasuredLines lines{VectorXd::Constant(count, kAbsent), VectorXd::Constant(count, kAbsent), {}};
-  const std::vector<ResponseOfLines> responses = collectResponses(infos);
+  const std::vector<ResponseOfLines> responses = collectResponses(layout, infos);
   for (const ResponseOfLines& response : responses) {
     const LineColumns columns =
         findLineColumns(table, listPrefixes(spec, layout, responses, response), response);

@@ -36,6 +36,17 @@ std::vector<Eigen::Index> findFeaturesOf(const FeatureExtractor& extractor, Eige
   return found;
 }
 
+/// Throws for a feature that a whole response does not have.
+void requireAll(const Eigen::VectorXd& features, const FeatureExtractor& extractor,
+                const std::string& source) {
+  for (Eigen::Index i = 0; i < features.size(); ++i) {
+    if (!std::isfinite(features[i])) {
+      throw MeasurementError(source + ": the response has no feature '" +
+                             extractor.getInfos()[static_cast<std::size_t>(i)].name + "'");
+    }
+  }
+}
+
 }  // namespace
 
 void requireNoneStated(const StatedNoise& stated, const std::string& source) {
@@ -138,6 +149,11 @@ AvailableFeatures MeasurementReader::readAvailableFeatures(const Table& table,
                                                            std::optional<double> start) const {
   AvailableFeatures found =
       isFrequencyResponse(table, linear_.getInfos()) ? readLines(table) : readSamples(table, start);
+  for (Eigen::Index i = 0; i < found.features.size(); ++i) {
+    if (std::isfinite(found.features[i])) {
+      found.available.push_back(i);
+    }
+  }
   if (found.available.empty()) {
     throw MeasurementError(table.source + ": no feature can be computed from the samples that are there");
   }
@@ -159,11 +175,6 @@ AvailableFeatures MeasurementReader::readLines(const Table& table) const {
   if (!lines.stddevs.array().isNaN().all()) {
     found.stated.features = lines.stddevs;
   }
-  for (Eigen::Index i = 0; i < found.features.size(); ++i) {
-    if (std::isfinite(found.features[i])) {
-      found.available.push_back(i);
-    }
-  }
   return found;
 }
 
@@ -184,14 +195,8 @@ AvailableFeatures MeasurementReader::readSamples(const Table& table, std::option
       found.clipped.push_back({feature, sample.limit, sample.side});
     }
   }
-  const Eigen::Index missing_samples = response.missing + static_cast<Eigen::Index>(response.clipped.size());
-  for (Eigen::Index i = 0; i < found.features.size(); ++i) {
-    if (std::isfinite(found.features[i])) {
-      found.available.push_back(i);
-    } else if (missing_samples == 0) {
-      throw MeasurementError(table.source + ": the response has no feature '" +
-                             extractor_.getInfos()[static_cast<std::size_t>(i)].name + "'");
-    }
+  if (response.missing == 0 && response.clipped.empty()) {
+    requireAll(found.features, extractor_, table.source);
   }
   return found;
 }
@@ -204,11 +209,7 @@ Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optiona
 Eigen::VectorXd extractFeatures(const FeatureExtractor& extractor, const Eigen::VectorXd& response,
                                 const std::string& source) {
   Eigen::VectorXd features = extractor.extract(response);
-  for (Eigen::Index i = 0; i < features.size(); ++i) {
-    if (!std::isfinite(features[i])) {
-      throw MeasurementError(source + ": the response has no feature '" + extractor.getInfos()[i].name + "'");
-    }
-  }
+  requireAll(features, extractor, source);
   return features;
 }
 

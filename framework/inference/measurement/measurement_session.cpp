@@ -72,7 +72,7 @@ InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<
     direct_ = std::make_unique<DirectInference>(getReader(), posterior_options_.draws,
                                                 SimulatorRefiner::Model::kTrusted);
   }
-  return direct_->infer(table, start, known);
+  return direct_->infer(table, start, found, known);
 }
 
 InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
