@@ -52,10 +52,9 @@ std::optional<Rivals> findRivals(const ExperimentSpec& without_terms, const Reco
 
 /// Whether the first of the rivals is to take the term's place.
 bool takesOver(const Rivals& rivals, const CurrentFit& fit) {
-  constexpr double kNoticed = 9.0;  // of chi-square: three standard deviations, where the fit is not linear
   const TermFinding &best = rivals.ranked.front().finding, &present = rivals.ranked[rivals.present].finding;
   return rivals.present != 0 && best.fitted && best.log_evidence > present.log_evidence + kTiedEvidence &&
-         best.chi_square < fit.chi_square + kNoticed;
+         best.chi_square < fit.chi_square + kNoticedChiSquare;
 }
 
 /// Those that cannot be told from `chosen`.

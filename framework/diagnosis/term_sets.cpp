@@ -220,8 +220,7 @@ std::vector<std::string> dropSuperfluous(const ExperimentSpec& without_terms,
       continue;
     }
     CurrentFit without = fitWithout(without_terms, recordings, fit, i);
-    constexpr double kNoticed = 9.0;  // of chi-square: three standard deviations, where the fit is not linear
-    if (without.point.size() == 0 || without.chi_square > fit.chi_square + kNoticed) {
+    if (without.point.size() == 0 || without.chi_square > fit.chi_square + kNoticedChiSquare) {
       ++i;
       continue;
     }

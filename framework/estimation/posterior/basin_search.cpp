@@ -46,16 +46,6 @@ std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
   return team.listEnds();
 }
 
-/// All starts that may be needed (u x n).
-MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
-  PointSetSpec sobol;
-  sobol.method = DesignMethod::kSobol;
-  sobol.samples = count;
-  const MatrixXd unit =
-      sampleUnitCube(sobol, static_cast<int>(dimensions), seed, RandomPurpose::kBasinStarts);
-  return 2.0 * unit.array() - 1.0;
-}
-
 /// The basin that is nearest to a point.
 const Basin& findNearest(const std::vector<Basin>& basins, const VectorXd& at) {
   return *std::min_element(basins.begin(), basins.end(), [&](const Basin& a, const Basin& b) {
@@ -203,6 +193,15 @@ class BasinHunt {
 };
 
 }  // namespace
+
+MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
+  PointSetSpec sobol;
+  sobol.method = DesignMethod::kSobol;
+  sobol.samples = count;
+  const MatrixXd unit =
+      sampleUnitCube(sobol, static_cast<int>(dimensions), seed, RandomPurpose::kBasinStarts);
+  return 2.0 * unit.array() - 1.0;
+}
 
 bool liesIn(const Basin& basin, const VectorXd& at) {
   const VectorXd apart = at - basin.local.at;

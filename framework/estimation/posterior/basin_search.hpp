@@ -14,6 +14,9 @@ struct Basin {
   int searches = 0;            ///< that ended in it
 };
 
+/// Points all over the box (u x n) to search from: of a Sobol sequence.
+Eigen::MatrixXd makeStarts(Eigen::Index dimensions, std::uint64_t seed, int count);
+
 constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
 
 /// Whether a point is within kBasinReach standard deviations of a basin's minimum.

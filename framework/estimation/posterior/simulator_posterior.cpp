@@ -13,7 +13,6 @@
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/experiment/points/point_set.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
@@ -350,16 +349,10 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
 }
 
 double findLeastChiSquare(const PosteriorProblem& problem) {
-  constexpr Index kPoints = 32, kSearches = 3;
+  constexpr int kPoints = 32, kSearches = 3;
   ProblemSurface whole(problem);
   MisfitSurface& surface = whole.upd();
-  PointSetSpec sobol;
-  sobol.method = DesignMethod::kSobol;
-  sobol.samples = kPoints;
-  const MatrixXd points =
-      2.0 * sampleUnitCube(sobol, static_cast<int>(surface.getDimensions()), 1, RandomPurpose::kBasinStarts)
-                .array() -
-      1.0;
+  const MatrixXd points = makeStarts(surface.getDimensions(), 1, kPoints);
   const VectorXd misfits = surface.calcMisfits(points);
   std::vector<Index> order(kPoints);
   std::iota(order.begin(), order.end(), Index{0});

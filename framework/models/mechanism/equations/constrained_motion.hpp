@@ -83,6 +83,18 @@ void prescribe(const std::vector<Prescribed<S>>& known, std::vector<ClosureTerms
   }
 }
 
+/// By the excess that free accelerations leave of the conditions.
+template <class S>
+ConstrainedMotion<S> holdConditions(const Factors<S>& mass, const ClosureResponse<S>& response,
+                                    std::vector<S> excess, std::vector<S> free) {
+  ConstrainedMotion<S> motion;
+  motion.forces = solve(response.schur, std::move(excess));
+  motion.accelerations = subtractResponse(response, motion.forces, std::move(free));
+  motion.pivots = mass.pivots;
+  motion.pivots.insert(motion.pivots.end(), response.schur.pivots.begin(), response.schur.pivots.end());
+  return motion;
+}
+
 /// M u' + G' l = f and G u' + bias = 0, by elimination of u'.
 template <class S>
 ConstrainedMotion<S> solveConstrained(LinearSystem<S> equations,
@@ -97,12 +109,7 @@ ConstrainedMotion<S> solveConstrained(LinearSystem<S> equations,
   for (const ClosureTerms<S>& closure : closures) {
     excess.push_back(dotRow(closure.row, free) + closure.bias);
   }
-  ConstrainedMotion<S> motion;
-  motion.forces = solve(response.schur, std::move(excess));
-  motion.accelerations = subtractResponse(response, motion.forces, std::move(free));
-  motion.pivots = mass.pivots;
-  motion.pivots.insert(motion.pivots.end(), response.schur.pivots.begin(), response.schur.pivots.end());
-  return motion;
+  return holdConditions(mass, response, std::move(excess), std::move(free));
 }
 
 /// Couples a coordinate to no other: its row and column of the mass matrix, of which the lower triangle is

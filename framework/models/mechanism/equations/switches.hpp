@@ -127,12 +127,7 @@ ConstrainedMotion<S> solveHeld(LinearSystem<S> equations, std::vector<ClosureTer
   }
   std::vector<S> none;
   response.schur = factorize(std::move(schur), kSingularClosure, none);
-  ConstrainedMotion<S> motion;
-  motion.forces = solve(response.schur, std::move(excess));
-  motion.accelerations = subtractResponse(response, motion.forces, std::move(free));
-  motion.pivots = mass.pivots;
-  motion.pivots.insert(motion.pivots.end(), response.schur.pivots.begin(), response.schur.pivots.end());
-  return motion;
+  return holdConditions(mass, response, std::move(excess), std::move(free));
 }
 
 }  // namespace twinmap::equations

@@ -301,6 +301,22 @@ TEST(Loops, HaveExactDerivativesOnBalls) {
   expectExactLoopDerivatives(model, Eigen::Vector2d(0.33, 0.2));
 }
 
+/// A sine of so low a frequency that it does not change.
+SineSpec steadySine(const std::string& amplitude) {
+  SineSpec sine;
+  sine.amplitude = ex(amplitude);
+  sine.frequency = ex("1e-12");
+  sine.phase = ex("pi / 2");
+  return sine;
+}
+
+SignalSpec constantSignal(const std::string& text, const std::string& amplitude) {
+  SignalSpec signal;
+  signal.name = name(text);
+  signal.sines = {steadySine(amplitude)};
+  return signal;
+}
+
 /// The slider-crank with its crank's angle prescribed: 0.4 + swing sin(2 pi 1.3 t), from within its motion.
 ModelSpec makeDrivenSliderCrank() {
   ModelSpec model = makeSliderCrank();
@@ -309,12 +325,9 @@ ModelSpec makeDrivenSliderCrank() {
   model.system.constraints[0].coincident->from.point = ex3("l", "0", "0");
   SignalSpec drive;
   drive.name = name("drive");
-  drive.sines.resize(2);
+  drive.sines = {{}, steadySine("0.4")};
   drive.sines[0].amplitude = ex("swing");
   drive.sines[0].frequency = ex("1.3");
-  drive.sines[1].amplitude = ex("0.4");  // constant
-  drive.sines[1].frequency = ex("1e-12");
-  drive.sines[1].phase = ex("pi / 2");
   model.excitation = {drive};
   model.system.motions = {{name("a"), name("drive")}};
   model.initial.coordinates = {value("b", "-0.2"), value("x", "0.3")};
@@ -376,13 +389,7 @@ TEST(Loops, HaveExactDerivativesBehindAPrescribedMotion) {
 
 TEST(Loops, MustLeaveSomethingFreeToFollowAMotion) {
   ModelSpec model = makeDrivenSliderCrank();
-  SignalSpec still;
-  still.name = name("still");
-  still.sines.resize(1);
-  still.sines[0].amplitude = ex("0.2");
-  still.sines[0].frequency = ex("1e-12");
-  still.sines[0].phase = ex("pi / 2");
-  model.excitation.push_back(still);
+  model.excitation.push_back(constantSignal("still", "0.2"));
   model.system.motions.push_back({name("x"), name("still")});
   model.system.motions.push_back({name("b"), name("drive")});
   EXPECT_FALSE(getError(model).empty());
@@ -401,13 +408,7 @@ TEST(Motion, RestsWhereItsSignalStarts) {
                          body("mass", "2", kOrigin, kOrigin, joint(JointType::kSlider, {"x"}))};
   model.system.elements.get<TwoPointSpring>() = {
       {station("table", kOrigin), station("mass", ex3("1", "0", "0")), ex("400"), ex("1")}};
-  SignalSpec signal;
-  signal.name = name("z");
-  signal.sines.resize(1);
-  signal.sines[0].amplitude = ex("0.03");
-  signal.sines[0].frequency = ex("1e-12");
-  signal.sines[0].phase = ex("pi / 2");
-  model.excitation = {signal};
+  model.excitation = {constantSignal("z", "0.03")};
   model.system.motions = {{name("table"), name("z")}};
   model.initial.equilibrium.emplace();
   model.initial.equilibrium->at = EquilibriumAt::kSample;

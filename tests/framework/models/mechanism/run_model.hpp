@@ -39,6 +39,18 @@ inline Eigen::MatrixXd runModel(const ModelSpec& model, const Eigen::VectorXd& t
   return response.reshaped(times.size(), model.outputs.size());
 }
 
+/// Outputs at eight times within 1e-6 of the range of each.
+template <std::size_t N>
+void expectOutputs(const ModelSpec& model, const double (&times)[8], const double (&expected)[N][8]) {
+  const Eigen::MatrixXd response = runModel(model, Eigen::Map<const Eigen::VectorXd>(times, 8));
+  for (std::size_t o = 0; o < N; ++o) {
+    const Eigen::VectorXd values = Eigen::Map<const Eigen::VectorXd>(expected[o], 8);
+    EXPECT_LT((response.col(o) - values).cwiseAbs().maxCoeff(),
+              1e-6 * (values.maxCoeff() - values.minCoeff()))
+        << o;
+  }
+}
+
 inline SampleStatus getStatus(const ModelSpec& model, const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
   const Eigen::VectorXd times = Eigen::VectorXd::Constant(1, model.simulation.duration);
   MultibodySimulator simulator(model, times);
