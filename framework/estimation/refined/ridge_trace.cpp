@@ -1,6 +1,7 @@
 #include "framework/estimation/refined/ridge_trace.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -33,8 +34,25 @@ struct RidgePiece {
   VectorXd tangent;     ///< s: the way of one unit of the flat coordinate
   MatrixXd covariance;  ///< s x s, across the ridge
   double from, to;      ///< of the tangent, the part of the piece that is within the box
-  double log_weight;
+  double log_height;    ///< Laplace's approximation across
+  double log_weight;    ///< of the piece within the box
 };
+
+/// Between two points of a straight ridge; share 0 is the first.
+LocalMisfit blend(const LocalMisfit& first, const LocalMisfit& second, double share) {
+  const auto mix = [share](const auto& a, const auto& b) { return (a + share * (b - a)).eval(); };
+  LocalMisfit between = first;
+  between.at = mix(first.at, second.at);
+  between.chi_square += share * (second.chi_square - first.chi_square);
+  between.information = mix(first.information, second.information);
+  between.descent = mix(first.descent, second.descent);
+  between.beside.misfit += share * (second.beside.misfit - first.beside.misfit);
+  if (between.beside.descent.size() > 0) {
+    between.beside.descent = mix(first.beside.descent, second.beside.descent);
+    between.beside.information = mix(first.beside.information, second.beside.information);
+  }
+  return between;
+}
 
 class RidgeWalk {
  public:
@@ -59,7 +77,7 @@ class RidgeWalk {
     if (!middle || !add(*middle)) {
       return false;  // the minimum lies beyond the bounds
     }
-    return walk(step_) && walk(-step_);
+    return crossStraight() || (walk(step_) && walk(-step_));
   }
 
   const std::vector<RidgePiece>& getPieces() const { return pieces_; }
@@ -75,6 +93,69 @@ class RidgeWalk {
       return length < kSettled;
     }
   };
+
+  /// All pieces of a ridge that is straight between its ends, as that of a sum is: the middle, both ends and
+  /// the points halfway are simulated, the others interpolated. False, and the middle alone, where it bends
+  /// or its weight changes.
+  bool crossStraight() {
+    const RidgePiece middle = pieces_.front();
+    const std::array<Index, 2> counts{countWithin(middle, step_), countWithin(middle, -step_)};
+    const std::array<Index, 4> places{counts[0] / 2, counts[0], -(counts[1] / 2), -counts[1]};
+    MatrixXd points(middle.tangent.size(), 4);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      points.col(static_cast<Index>(k)) =
+          middle.local.at + static_cast<double>(places[k]) * step_ * middle.tangent;
+    }
+    const std::vector<LocalMisfit> found = misfit_.linearizeAll(points);
+    for (const LocalMisfit& local : found) {
+      if (!local.status.ok || !continuesStraight(middle, local)) {
+        return false;
+      }
+    }
+    for (const std::size_t side : {0, 1}) {
+      const LocalMisfit &halfway = found[2 * side], &end = found[2 * side + 1];
+      const Index half = counts[side] / 2, rest = counts[side] - half;
+      for (Index i = 1; i <= half; ++i) {
+        add(blend(middle.local, halfway, static_cast<double>(i) / static_cast<double>(half)));
+      }
+      for (Index i = 1; i <= rest; ++i) {
+        add(blend(halfway, end, static_cast<double>(i) / static_cast<double>(rest)));
+      }
+    }
+    return true;
+  }
+
+  /// Pieces beyond this one within the bounds and the search's limits, if the ridge goes straight on.
+  Index countWithin(const RidgePiece& middle, double step) const {
+    constexpr Index kMost = 96;  // half of those that a walk takes
+    RidgePiece piece = middle;
+    for (Index i = 0; i < kMost; ++i) {
+      piece.local.at += step * piece.tangent;
+      if (misfit_.getBox().clamp(piece.local.at) != piece.local.at || !cutAtBounds(piece)) {
+        return i;
+      }
+    }
+    return kMost;
+  }
+
+  /// Whether the ridge passes through `end` in the same direction with about the same weight.
+  bool continuesStraight(const RidgePiece& middle, const LocalMisfit& end) const {
+    constexpr double kSettled = 0.1;  // standard deviations across, as that of a step
+    constexpr double kAlike = 0.2;    // log weight: linear between, it is wrong by some hundredths at most
+    const MatrixXd whole = end.calcInformationWithin();
+    const MatrixXd information = across_.transpose() * whole * across_;
+    const linalg::Cholesky factor = linalg::calcCholesky(information);
+    if (!factor.positive_definite || !calcStep(end).isSettled()) {
+      return false;
+    }
+    const VectorXd coupling = across_.transpose() * whole * along_;
+    const VectorXd turned =
+        across_.transpose() * (middle.tangent - along_) + linalg::solveCholesky(factor.lower, coupling);
+    const double way = (end.at - middle.local.at).dot(along_);
+    const double log_weight = -0.5 * end.calcMisfitWithin() - factor.lower.diagonal().array().log().sum();
+    return std::abs(way) * std::sqrt(turned.dot(information * turned)) < kSettled &&
+           std::abs(log_weight - middle.log_height) < kAlike;
+  }
 
   /// Piece by piece from the first, several at a time, all on the tangent of the last: samples that are
   /// simulated together cost little more than one. Where the ridge bends too much for that, the next ones
@@ -158,7 +239,9 @@ class RidgeWalk {
     const MatrixXd information = across_.transpose() * whole * across_;
     const linalg::Cholesky factor = linalg::calcCholesky(information);
     const VectorXd coupling = across_.transpose() * whole * along_;
-    RidgePiece piece{local, along_ - across_ * linalg::solveCholesky(factor.lower, coupling), {}, 0.0, 0.0,
+    RidgePiece piece{local, along_ - across_ * linalg::solveCholesky(factor.lower, coupling),
+                     {},    0.0,
+                     0.0,   -0.5 * local.calcMisfitWithin() - factor.lower.diagonal().array().log().sum(),
                      0.0};
     piece.covariance =
         across_ * linalg::solveCholesky(factor.lower, MatrixXd::Identity(coupling.size(), coupling.size())) *
@@ -166,8 +249,7 @@ class RidgeWalk {
     if (!cutAtBounds(piece)) {
       return false;
     }
-    piece.log_weight = -0.5 * local.calcMisfitWithin() - factor.lower.diagonal().array().log().sum() +
-                       std::log(piece.to - piece.from) + calcLogWithin(piece);
+    piece.log_weight = piece.log_height + std::log(piece.to - piece.from) + calcLogWithin(piece);
     pieces_.push_back(piece);
     return true;
   }
