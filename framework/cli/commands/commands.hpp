@@ -245,6 +245,9 @@ void cancel(const std::string& folder);
 std::filesystem::path chooseFolder(const RunArguments& arguments, const ExperimentSpec& experiment);
 double chooseMemory(const RunArguments& arguments);
 
+/// What one case must not exceed, bytes: what is available, or more where the user says so.
+double getMostMemory(const RunArguments& arguments);
+
 /// Designs the excitation of an experiment and prints what it brings. Throws Interrupted where a signal asked
 /// to stop, with the command that continues.
 void designExcitation(const DesignArguments& arguments);

@@ -18,7 +18,9 @@ void plan(const RunArguments& arguments) {
   silenceLog();  // of the small runs that are timed
   const ExperimentSurvey survey =
       surveyCases(std::move(cases), {chooseFolder(arguments, readExperiment(tree)), arguments.store});
-  std::cout << describePlan(planRun(survey, options), options);
+  const SweepPlan plan = planRun(survey, options);
+  std::cout << describePlan(plan, options) << std::flush;
+  requireFit(survey, plan, options, getMostMemory(arguments));
 }
 
 }  // namespace twinmap::cli

@@ -23,11 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What one case must not exceed: what is available, or more where the user says so.
-double getMostMemory(const RunArguments& arguments) {
-  return std::max(getAvailableMemory(), arguments.memory * kGibibyte);
-}
-
 /// `line` must outlive it.
 RunControl makeControl(const RunArguments& arguments, ProgressLine& line) {
   const StopFlags flags = catchSignals();
@@ -107,6 +102,10 @@ void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::pat
 
 std::filesystem::path chooseFolder(const RunArguments& arguments, const ExperimentSpec& experiment) {
   return arguments.folder.empty() ? "results/" + experiment.name.text : arguments.folder;
+}
+
+double getMostMemory(const RunArguments& arguments) {
+  return std::max(getAvailableMemory(), arguments.memory * kGibibyte);
 }
 
 double chooseMemory(const RunArguments& arguments) {

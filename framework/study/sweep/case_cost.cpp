@@ -271,10 +271,10 @@ void requireMemory(const ExperimentSpec& experiment, int threads, double bytes) 
     throw ExperimentError(
         {experiment.name.where.file, 0, 0, "design"}, "",
         fmt::format(
-            "needs about {:.3g} GiB of memory for {} features, {} training samples x {} draws of noise and "
-            "{} "
-            "test samples; {:.3g} GiB are available. {}, or allow more (--memory)",
-            needed / kGibibyte, countFeatures(experiment), experiment.design.train.samples.number,
+            "needs about {} GiB of memory for {} features, {} training samples x {} draws of noise and "
+            "{} test samples; {:.3g} GiB are available. {}, or allow more (--memory)",
+            fmt::format(needed < 1000.0 * kGibibyte ? "{:.3g}" : "{:.0f}", needed / kGibibyte),
+            countFeatures(experiment), experiment.design.train.samples.number,
             experiment.noise.replicates.value_or(1), experiment.design.test.samples.number, bytes / kGibibyte,
             kBytes * countFeatureNumbers(experiment) > 0.5 * needed
                 ? "Take fewer samples of the outputs: the covariance of their noise grows with the square"

@@ -3,6 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -16,6 +19,9 @@
 #include "framework/study/sweep/sweep_folder.hpp"
 
 namespace twinmap {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 constexpr double kNumber = 8.0;                      // bytes
@@ -172,13 +178,19 @@ const ExperimentSpec& findLargest(const std::vector<SweepCase>& cases) {
       ->experiment;
 }
 
+/// Two digits, without an exponent.
+std::string describeRoughly(double value) {
+  const double unit = value >= 100.0 ? std::pow(10.0, std::floor(std::log10(value)) - 1.0) : 0.0;
+  return unit > 0.0 ? fmt::format("{:.0f}", std::round(value / unit) * unit) : fmt::format("{:.2g}", value);
+}
+
 std::string describeSeconds(double seconds) {
   constexpr double kMinute = 60.0, kHour = 3600.0;
   if (seconds < 2.0 * kMinute) {
-    return fmt::format("{:.2g} s", seconds);
+    return describeRoughly(seconds) + " s";
   }
-  return seconds < 2.0 * kHour ? fmt::format("{:.2g} min", seconds / kMinute)
-                               : fmt::format("{:.2g} h", seconds / kHour);
+  return seconds < 2.0 * kHour ? describeRoughly(seconds / kMinute) + " min"
+                               : describeRoughly(seconds / kHour) + " h";
 }
 
 /// The time where the automatic choice ends with its second step.
@@ -225,8 +237,20 @@ std::string describeStages(const std::vector<StageTime>& stages) {
 
 std::string describeBytes(double bytes) {
   constexpr double kMebi = 1024.0 * 1024.0;
-  return bytes < 1024.0 * kMebi ? fmt::format("{:.2g} MiB", bytes / kMebi)
-                                : fmt::format("{:.2g} GiB", bytes / kMebi / 1024.0);
+  return bytes < 1024.0 * kMebi ? describeRoughly(bytes / kMebi) + " MiB"
+                                : describeRoughly(bytes / kMebi / 1024.0) + " GiB";
+}
+
+/// Bytes that may be written to the file system where `folder` lies or will lie; unlimited where it does not
+/// say.
+double findFreeDisk(fs::path folder) {
+  folder = fs::absolute(folder);
+  while (!fs::exists(folder) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  std::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  return error ? std::numeric_limits<double>::infinity() : static_cast<double>(space.available);
 }
 
 }  // namespace
@@ -234,6 +258,7 @@ std::string describeBytes(double bytes) {
 ExperimentSurvey surveyCases(std::vector<SweepCase> cases, const ResultPlace& place) {
   ExperimentSurvey survey;
   survey.cases = std::move(cases);
+  survey.folder = place.folder;
   survey.complete = findCompleteCases(survey.cases, place.folder);
   survey.stored = countStored(survey.cases, survey.complete, getStoreRoot(place.folder, place.store));
   if (std::count(survey.complete.begin(), survey.complete.end(), false) > 0) {
@@ -289,6 +314,26 @@ std::string describePlan(const SweepPlan& plan, const PlanOptions& options) {
     text += "warning: " + warning + "\n";
   }
   return text;
+}
+
+void requireFit(const ExperimentSurvey& survey, const SweepPlan& plan, const PlanOptions& options,
+                double most_memory) {
+  const std::vector<bool> todo = findTodo(survey);
+  const int threads = survey.cases.size() > 1 ? 1 : options.threads;
+  for (std::size_t i = 0; i < survey.cases.size(); ++i) {
+    if (todo[i]) {
+      requireMemory(survey.cases[i].experiment, threads, most_memory);
+    }
+  }
+  const ExperimentSpec& first = survey.cases.front().experiment;
+  const double free = findFreeDisk(survey.folder);
+  if (plan.disk > free) {
+    throw ExperimentError(
+        {first.name.where.file, 0, 0, "design"}, "",
+        fmt::format("needs about {} of disk, of which {} are free at '{}'. Reduce the samples, or "
+                    "write to another disk (--out, --store)",
+                    describeBytes(plan.disk), describeBytes(free), survey.folder.string()));
+  }
 }
 
 }  // namespace twinmap

@@ -21,6 +21,7 @@ struct ResultPlace {
 struct ExperimentSurvey {
   std::vector<SweepCase> cases;  ///< one without a name where there is no sweep
   std::vector<bool> complete;    ///< one value a case
+  std::filesystem::path folder;  ///< of the run
   StoredCounts stored;
   ProbeTimes times;  ///< of the case with the most work; none where all are complete
 };
@@ -52,7 +53,12 @@ struct SweepPlan {
 /// Plans a run of what was looked at.
 SweepPlan planRun(const ExperimentSurvey& survey, const PlanOptions& options);
 
-/// For people, a line a fact.
+/// A line a fact.
 std::string describePlan(const SweepPlan& plan, const PlanOptions& options);
+
+/// Throws ExperimentError where a run would not fit: a case that is to be done into `most_memory` (bytes; a
+/// run refuses it, too), or what is to be written on the disk of the run's folder.
+void requireFit(const ExperimentSurvey& survey, const SweepPlan& plan, const PlanOptions& options,
+                double most_memory);
 
 }  // namespace twinmap

@@ -495,6 +495,14 @@ class Plan(SweepTestCase):
         self.assertIn("8, 8 of them complete\nsimulations: 48 needed, 48 stored, 0 to do", self.plan(*SWEEP))
         self.assertEqual(files, sorted((self.folder / "run").rglob("*")))
 
+    def test_refuses_what_does_not_fit(self):
+        gp = "inverse_map={gp: {approximation: exact}}"
+        result = call("plan", CART, gp, "design.train.samples=60000", "--out", self.folder / "run")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertRegex(result.stdout, r"memory:      about \d+ GiB, of ")
+        self.assertRegex(result.stderr, r"design: needs about \d+ GiB of memory for .* 60000 training samples")
+        self.assertFalse((self.folder / "run").exists())
+
     def test_counts_what_is_stored_and_what_the_limits_need(self):
         self.run_sweep("run", sweep=[*SMALL, DIFFERENCES, "design.train.samples=8"])
         plan = self.plan(*LIMITS, "design.train.samples=8,24", "--store", self.folder / "run/chunks")
