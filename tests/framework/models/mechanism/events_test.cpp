@@ -5,7 +5,7 @@
 
 #include "framework/experiment/check/check_pairs.hpp"
 #include "tests/framework/models/mechanism/events_golden.hpp"
-#include "tests/framework/models/mechanism/run_model.hpp"
+#include "tests/framework/models/mechanism/exact_events.hpp"
 
 namespace twinmap::testing {
 namespace {
@@ -45,45 +45,14 @@ SignalSpec sineSignal(const std::string& text, const std::string& amplitude, con
   return spec;
 }
 
-struct Solution {
-  MatrixXd response, derivatives;  ///< rows: outputs, each at all times
-};
-
-Solution solveWithDerivatives(const ModelSpec& model, const VectorXd& times, const VectorXd& point) {
-  MultibodySimulator simulator(model, times);
-  Solution solution{MatrixXd(simulator.getLayout().getRowCount(), 1), {}};
-  SampleStatus status;
-  simulator.simulateWithDerivatives(point, solution.response, solution.derivatives, &status);
-  EXPECT_TRUE(status.ok) << status.reason;
-  return solution;
-}
-
-/// Against central differences through the same events, 1e-5 of the largest of each output. The steps are so
-/// small that no event passes a time of output.
-void expectExactEvents(ModelSpec model, const VectorXd& point, double duration, double share = 2e-5) {
-  model.simulation.relative_tolerance = 1e-12;
-  model.simulation.absolute_tolerance = 1e-15;
-  const VectorXd times = VectorXd::LinSpaced(14, 0.13 * duration, 0.97 * duration);
-  const Solution exact = solveWithDerivatives(model, times, point);
-  MultibodySimulator simulator(model, times);
-  for (Index k = 0; k < point.size(); ++k) {
-    const double step = share * (model.parameters[k].bounds.upper - model.parameters[k].bounds.lower);
-    MatrixXd points = point.replicate(1, 2), responses(exact.response.rows(), 2);
-    points(k, 0) -= step;
-    points(k, 1) += step;
-    SampleStatus statuses[2];
-    simulator.simulate(points, responses, statuses);
-    const VectorXd differences = (responses.col(1) - responses.col(0)) / (2.0 * step);
-    for (std::size_t o = 0; o < model.outputs.size(); ++o) {
-      const auto rows = Eigen::seqN(static_cast<Index>(o) * times.size(), times.size());
-      EXPECT_LT((exact.derivatives.col(k)(rows) - differences(rows)).cwiseAbs().maxCoeff(),
-                1e-5 * differences(rows).cwiseAbs().maxCoeff())
-          << model.parameters[k].name.text << " of " << model.outputs[o].name.text;
-    }
-  }
-}
-
 // ---------------------------------------------------------------------------------------------- impacts
+
+OutputSpec forceOf(const std::string& text) {
+  OutputSpec spec;
+  spec.name = name("force of " + text);
+  spec.force_of = name(text);
+  return spec;
+}
 
 struct Flight {
   double height, speed;
@@ -360,6 +329,100 @@ TEST(DryFriction, HasExactDerivativesThroughStickAndSlip) {
   model.system.elements.get<Friction>()[0].coulomb = ex("Fc");
   model.system.bodies[1].mass = ex("m");
   expectExactEvents(model, Eigen::Vector2d(4.0, 1.0), 2.0);
+}
+
+/// make_events_golden.py: table. The table carries the block as its joint's parent.
+ModelSpec makeOnTable() {
+  ModelSpec model = makeModel(2.0);
+  addSliding(model, "table", "7");
+  addSliding(model, "x", "2");
+  model.system.bodies[1].joint.parent = name("on table");
+  Friction<Expression> friction = dryFriction("x", "6.5");
+  friction.name = name("friction");
+  model.system.elements.get<Friction>() = {friction};
+  model.excitation = {sineSignal("z", "0.1", "1")};
+  model.system.motions = {{name("table"), name("z")}};
+  start(model, "x", "0", "0");
+  model.outputs = {coordinateOutput("x"), speedOutput("x"), forceOf("friction")};
+  return model;
+}
+
+TEST(DryFriction, OnATableThatASignalMovesIsScipys) {
+  expectOutputs(makeOnTable(), golden::kEventTimes, golden::kOnTable);
+}
+
+TEST(DryFriction, OnATableThatASignalMovesHasExactDerivatives) {
+  ModelSpec model = makeOnTable();
+  model.parameters = {parameter("Fc", 5, 7), parameter("A", 0.08, 0.12)};
+  model.system.elements.get<Friction>()[0].coulomb = ex("Fc");
+  model.excitation = {sineSignal("z", "A", "1")};
+  expectExactEvents(model, Eigen::Vector2d(6.5, 0.1), 2.0);
+}
+
+TEST(DryFriction, BreaksLooseUnderAForceThatSwingsWhileNothingMoves) {
+  ModelSpec model = makeModel(4.0);
+  addSliding(model, "x", "2");
+  model.system.elements.get<Friction>() = {dryFriction("x", "3")};
+  model.system.elements.get<ForceLaw>() = {law("x", "3.2 * sin(2 * pi * 2 * t)")};
+  model.outputs = {coordinateOutput("x")};
+  const MatrixXd result = runModel(model, VectorXd::Constant(1, 0.3));
+  // 2 x'' = 3.2 sin(w t) - 3 from asin(3 / 3.2) / w on, until the next swing
+  const double w = 4.0 * M_PI, begin = std::asin(3.0 / 3.2) / w;
+  const auto calcSpeed = [&](double t) {
+    return (3.2 / w * (std::cos(w * begin) - std::cos(w * t)) - 3.0 * (t - begin)) / 2.0;
+  };
+  double low = 0.125, high = 0.25;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (calcSpeed(middle) > 0.0 ? low : high) = middle;
+  }
+  const double end = low, span = end - begin;
+  const double path =
+      (3.2 / w * (std::cos(w * begin) * span - (std::sin(w * end) - std::sin(w * begin)) / w) -
+       1.5 * span * span) /
+      2.0;
+  EXPECT_GT(path, 1e-4);
+  EXPECT_NEAR(result(0, 0), path, 1e-7);
+}
+
+TEST(DryFriction, ShowsWhatItHoldsWithWhileItSticks) {
+  // a ramp of 2 N/s against 3 N; beside it an elastic stop whose place in the list a rigid one takes
+  // elsewhere
+  ModelSpec model = makeModel(2.5);
+  addSliding(model, "x", "2");
+  Friction<Expression> friction = dryFriction("x", "3");
+  friction.name = name("friction");
+  model.system.elements.get<Friction>() = {friction};
+  model.system.elements.get<ForceLaw>() = {law("x", "2 * t")};
+  Stop<Expression> elastic;
+  elastic.coordinate = name("x");
+  elastic.below = ex("0.1");
+  elastic.stiffness = ex("10");
+  elastic.name = name("elastic");
+  Stop<Expression> rigid = rigidStop("x", "-1", "0.5");
+  rigid.name = name("rigid");
+  model.system.elements.get<Stop>() = {rigid, elastic};
+  model.outputs = {forceOf("friction"), forceOf("elastic"), forceOf("rigid"), coordinateOutput("x")};
+  VectorXd times(4);
+  times << 0.25, 0.8, 1.9, 2.5;
+  const MatrixXd result = runModel(model, times);
+  for (int i = 0; i < 4; ++i) {
+    const bool sticks = times[i] < 1.0;  // until 2 t + 1 = 3
+    EXPECT_NEAR(result(i, 0), sticks ? -(2.0 * times[i] + 1.0) : -3.0, 1e-9);
+    EXPECT_NEAR(result(i, 1), 10.0 * std::max(0.1 - result(i, 3), 0.0), 1e-9);
+    EXPECT_EQ(result(i, 2), 0.0);
+  }
+}
+
+TEST(Rest, ShowsTheForceOfItsStop) {
+  ModelSpec model = makeModel(1.0);
+  addSliding(model, "y", "0.3", kAlongY);
+  model.system.gravity = ex3("0", "-9.81", "0");
+  model.system.elements.get<Stop>() = {rigidStop("y", "0", "0.5")};
+  model.system.elements.get<Stop>()[0].name = name("floor");
+  start(model, "y", "0");
+  model.outputs = {forceOf("floor")};
+  EXPECT_NEAR(runModel(model, VectorXd::Constant(1, 0.5))(0, 0), 0.3 * 9.81, 1e-12);
 }
 
 /// The piston passes dead centres, where no force at it holds the loop.
