@@ -174,6 +174,29 @@ TEST(Impacts, HaveExactDerivativesThroughTheMassMatrix) {
   expectExactEvents(model, Eigen::Vector3d(0.6, 0.1, 0.7), 2.0);
 }
 
+/// A ball thrown up to a height of h under a ceiling a little lower, in one step if nothing stopped it.
+TEST(Impacts, OfAFlightThatJustReachesACeilingAreSeen) {
+  for (const double share : {0.3, 0.1, 0.01, 1e-4, 1e-8, 0.0, -1e-8, -0.1}) {
+    ModelSpec model = makeModel(3.0);
+    addSliding(model, "y", "0.3", kAlongY);
+    model.system.gravity = ex3("0", "-10", "0");
+    Stop<Expression> ceiling;
+    ceiling.coordinate = name("y");
+    const double speed = 1.0, apex = 0.05, height = apex * (1.0 - share);
+    ceiling.above = ex(std::to_string(height));
+    ceiling.restitution = ex("0.5");
+    model.system.elements.get<Stop>() = {ceiling};
+    start(model, "y", "0", std::to_string(speed));
+    model.outputs = {coordinateOutput("y")};
+    const double limit = std::stod(ceiling.above->text), g = 10.0;
+    const double left = speed * speed - 2.0 * g * limit,
+                 meets = left < 0.0 ? 3.0 : (speed - std::sqrt(left)) / g;
+    const double back = -0.5 * std::sqrt(std::max(left, 0.0)), t = 0.5 - meets;
+    const double expected = left < 0.0 ? speed * 0.5 - 0.5 * g * 0.25 : limit + back * t - 0.5 * g * t * t;
+    EXPECT_NEAR(runModel(model, VectorXd::Constant(1, 0.5))(0, 0), expected, 1e-7) << share;
+  }
+}
+
 TEST(Rest, EndsWhereTheForcePullsAway) {
   // pressed by 3 N less 2 N/s: it leaves at 1.5 s, then x = (2 / m) (t - 1.5)^3 / 6
   ModelSpec model = makeModel(3.0);
@@ -383,6 +406,28 @@ TEST(DryFriction, BreaksLooseUnderAForceThatSwingsWhileNothingMoves) {
       2.0;
   EXPECT_GT(path, 1e-4);
   EXPECT_NEAR(result(0, 0), path, 1e-7);
+}
+
+TEST(DryFriction, SlidesBackAndOnAgainUnderAForceThatGrows) {
+  // m v' = 6 t - 3 - friction of 1 from v = 1/2: v falls as a parabola to -1/6 and returns, but for friction
+  ModelSpec model = makeModel(1.5);
+  addSliding(model, "x", "1");
+  model.system.elements.get<Friction>() = {dryFriction("x", "1")};
+  model.system.elements.get<ForceLaw>() = {law("x", "6 * t - 3")};
+  start(model, "x", "0", "0.5");
+  model.outputs = {speedOutput("x")};
+  // on: v = 1/2 - 4 t + 3 t^2 to 0; back while 3 - 6 t > 1: v' = 6 t - 2 from there; then it sticks or turns
+  const double halts = (4.0 - std::sqrt(10.0)) / 6.0;
+  const auto calcBack = [&](double t) { return 3.0 * (t * t - halts * halts) - 2.0 * (t - halts); };
+  VectorXd times(4);
+  times << 0.1, 0.3, 0.6, 1.5;
+  const double turns = 2.0 / 3.0 - halts;  // v is 0 again, at less than 1/3 + (1/3 - halts)
+  const double loose = std::max(turns, 2.0 / 3.0);
+  const MatrixXd result = runModel(model, times);
+  EXPECT_NEAR(result(0, 0), 0.5 - 0.4 + 0.03, 1e-9);
+  EXPECT_NEAR(result(1, 0), calcBack(0.3), 1e-9);
+  EXPECT_NEAR(result(2, 0), turns > 0.6 ? calcBack(0.6) : 0.0, 1e-9);
+  EXPECT_NEAR(result(3, 0), 3.0 * (1.5 * 1.5 - loose * loose) - 4.0 * (1.5 - loose), 1e-9);
 }
 
 TEST(DryFriction, ShowsWhatItHoldsWithWhileItSticks) {

@@ -50,11 +50,15 @@ class EventRecorder {
     for (int k = 0; k < countAll(); ++k) {
       const bool is_stop = k < countStops();
       events.guards.push_back(is_stop ? recordStopGuard(k) : recordFrictionGuard(k));
+      events.dips.push_back(is_stop ? select(equal(state_.modes[k], Symbol(1.0)), Symbol(1.0), calcGap(k))
+                                    : events.guards.back());
       choose(equal(switched_.event, Symbol(1.0 + k)), is_stop ? recordImpact(k) : recordFriction(k), behind);
     }
     for (std::size_t i = 0; i < touches_.size(); ++i) {
       const int k = countAll() + static_cast<int>(i);
       events.guards.push_back(recordTouchGuard(k, touches_[i]));
+      const Symbol &depth = touches_[i].depth, inside = equal(state_.modes[k], Symbol(1.0));
+      events.dips.push_back(select(inside, depth, -depth));
       Behind toggled{state_.speeds, state_.modes};
       toggled.modes[k] = 1.0 - state_.modes[k];
       choose(equal(switched_.event, Symbol(1.0 + k)), toggled, behind);

@@ -12,6 +12,7 @@ namespace twinmap {
 /// one guard for each switch (equations/switches.hpp), and the states behind its event.
 struct RecordedEvents {
   std::vector<program::Symbol> guards;       ///< empty: nothing switches
+  std::vector<program::Symbol> dips;         ///< as lanes::Equations::dips
   std::vector<program::Symbol> transitions;  ///< of all states, by the phase input `input`
   int input = -1;                            ///< as lanes::Equations::event_input
 };
@@ -32,8 +33,8 @@ struct SwitchedModel {
 /// less than a millionth of the simulation, 2 e v / acceleration, the coordinate rests on the stop until the
 /// force pulls away: impacts that accumulate end so. Friction whose sliding speed comes to 0 sticks where
 /// that takes at most its static level, and slides again where it takes more. A touch changes no state: the
-/// force of its damper jumps. Cost: two records of the motion for each stop and friction. `guards` and
-/// `transitions` alone are filled.
+/// force of its damper jumps. Cost: two records of the motion for each stop and friction. All but
+/// `input` is filled.
 RecordedEvents recordEvents(const SwitchedModel& switched);
 
 }  // namespace twinmap
