@@ -39,10 +39,11 @@ unsigned LanePacket::findEvents() {
     looking |= stepped ? 1u << lane : 0u;
     brackets_[lane] = {};
   }
+  const unsigned stepped = looking;
   dips_.resize(static_cast<std::size_t>(kLooks * events_->getDipCount() * count_));
   double* dips = dips_.data();
   for (const double fraction : kLookedAt) {
-    forEach(looking, [&](int lane) { arrays_.fraction[lane] = fraction; });
+    forEach(stepped, [&](int lane) { arrays_.fraction[lane] = fraction; });
     calcGuardsWithin();
     for (int k = 0; k < events_->getDipCount(); ++k) {
       for (int lane = 0; lane < count_; ++lane) {
@@ -57,11 +58,11 @@ unsigned LanePacket::findEvents() {
       (smallest <= 0.0 ? bracket.at_high : bracket.at_low) = smallest;
     });
     looking &= ~found;
-    if (looking == 0) {
+    if (looking == 0 && events_->getDipCount() == 0) {
       break;
     }
   }
-  found |= findDips(looking);
+  found = findDips(stepped, found);
   if (found != 0) {
     narrow(found);
     forEach(found, [this](int lane) { endStepAtEvent(lane); });
@@ -69,9 +70,9 @@ unsigned LanePacket::findEvents() {
   return found;
 }
 
-/// Among lanes whose guards are positive at all looks, those with an event between them.
-unsigned LanePacket::findDips(unsigned looking) {
-  unsigned found = 0;
+/// Adds lanes with an event between looks to those that are found, whose events may come earlier too. Behind
+/// an event the step goes on as if there were none, so that a parabola is seen as a whole.
+unsigned LanePacket::findDips(unsigned looking, unsigned found) {
   const int all = events_->getDipCount() * count_;
   for (int k = 0; k < events_->getDipCount() && looking != 0; ++k) {
     unsigned dipping = 0;

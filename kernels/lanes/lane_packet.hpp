@@ -42,7 +42,7 @@ class LanePacket {
   void beginAfterJump(int lane);
   void moveBack(int lane);
   unsigned findEvents();
-  unsigned findDips(unsigned looking);
+  unsigned findDips(unsigned looking, unsigned found);
   void calcGuardsWithin();
   void narrow(unsigned lanes);
   void endStepAtEvent(int lane);

@@ -197,6 +197,33 @@ TEST(Impacts, OfAFlightThatJustReachesACeilingAreSeen) {
   }
 }
 
+/// An elastic ball between a floor and a ceiling: its energy decides whether it reaches the ceiling, each
+/// time.
+TEST(Impacts, BetweenFloorAndCeilingAreSeenInEveryFlight) {
+  const double g = 10.0, v = 1.0;  // at height 1/2: up to .55
+  for (const double ceiling : {0.501, 0.52, 0.54, 0.549}) {
+    ModelSpec model = makeModel(5.0);
+    addSliding(model, "y", "0.3", kAlongY);
+    model.system.gravity = ex3("0", "-10", "0");
+    Stop<Expression> top;
+    top.coordinate = name("y");
+    top.above = ex(std::to_string(ceiling));
+    top.restitution = ex("1");
+    model.system.elements.get<Stop>() = {rigidStop("y", "0", "1"), top};
+    start(model, "y", "0.5", "1");
+    model.outputs = {coordinateOutput("y")};
+    const double low = std::sqrt(v * v + 2.0 * g * 0.5), high = std::sqrt(low * low - 2.0 * g * ceiling);
+    const double flight = (low - high) / g, begin = -(low - v) / g;  // the floor before the start
+    const VectorXd times = VectorXd::LinSpaced(40, 0.1, 5.0);
+    const MatrixXd result = runModel(model, times);
+    for (int i = 0; i < times.size(); ++i) {
+      const double phase = std::fmod(times[i] - begin, 2.0 * flight);
+      const double t = std::min(phase, 2.0 * flight - phase);
+      EXPECT_NEAR(result(i, 0), low * t - 0.5 * g * t * t, 1e-6) << ceiling << " at " << times[i];
+    }
+  }
+}
+
 TEST(Rest, EndsWhereTheForcePullsAway) {
   // pressed by 3 N less 2 N/s: it leaves at 1.5 s, then x = (2 / m) (t - 1.5)^3 / 6
   ModelSpec model = makeModel(3.0);
