@@ -23,6 +23,7 @@ void calcAt(program::Interpreter& program, bool& stale, const double* times, con
 
 EventPrograms::EventPrograms(const Problem& problem, const program::Engine& engine)
     : count_(problem.guard_count),
+      dip_count_(problem.dip_count),
       states_(problem.counts.states),
       rows_(problem.getRowCount()),
       event_input_(problem.event_input),

@@ -18,6 +18,8 @@ class EventPrograms {
   void calcGuards(const double* times, const double* states);
   int getCount() const { return count_; }
   double getGuard(int guard, int lane) const { return guards_.getOutput(guard)[lane]; }
+  int getDipCount() const { return dip_count_; }
+  double getDip(int dip, int lane) const { return guards_.getOutput(count_ + dip)[lane]; }
   /// The smallest of all guards; positive while no event is due.
   double calcSmallest(int lane) const;
 
@@ -33,7 +35,7 @@ class EventPrograms {
   int getEventInput() const { return event_input_; }
 
  private:
-  const int count_, states_, rows_, event_input_;
+  const int count_, dip_count_, states_, rows_, event_input_;
   program::Interpreter guards_, changes_, transitions_;
   bool guards_stale_ = true, changes_stale_ = true;  ///< parameters or phase inputs have changed
 };

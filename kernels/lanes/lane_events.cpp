@@ -8,11 +8,26 @@ namespace twinmap::lanes {
 namespace {
 
 /// Where a step is looked at, in parts of it. A guard that dips below 0 and returns between two of them is
-/// missed; the error control keeps steps well below the times in which a solution bends.
-constexpr double kLookedAt[] = {0.25, 0.5, 0.75, 1.0};
+/// found where it does so like a parabola; the error control keeps steps well below the times in which a
+/// solution bends otherwise.
+constexpr int kLooks = 4;
+constexpr double kLookedAt[kLooks] = {0.25, 0.5, 0.75, 1.0}, kApart = 0.25;
 constexpr int kMostTries = 300;     // 100 of them halve the bracket, beyond what a double resolves
 constexpr int kMostAtOnce = 100;    // far more than elements that meet at one time
 constexpr double kWidth = 0x1p-51;  // of a bracket, in parts of the time: two units in the last place
+
+/// Where a parabola through three successive looks is below 0, in parts of the step: between where it gets
+/// there and its smallest value. `middle`: the second look, at which it may be as far as `from` to `to` looks
+/// away. -1: nowhere.
+double findDip(double before, double at, double after, double middle, double from, double to) {
+  const double slope = 0.5 * (after - before), bend = before - 2.0 * at + after;
+  const double lowest = -slope / bend, depth = 0.5 * slope * slope / bend - at;
+  if (!(bend > 0.0 && depth >= 0.0 && lowest > from && lowest <= to)) {
+    return -1.0;
+  }
+  return std::max(middle + kApart * (lowest - 0.5 * std::sqrt(2.0 * depth / bend)),
+                  0.5 * (middle + kApart * lowest));
+}
 
 }  // namespace
 
@@ -24,9 +39,17 @@ unsigned LanePacket::findEvents() {
     looking |= stepped ? 1u << lane : 0u;
     brackets_[lane] = {};
   }
+  const unsigned stepped = looking;
+  dips_.resize(static_cast<std::size_t>(kLooks * events_->getDipCount() * count_));
+  double* dips = dips_.data();
   for (const double fraction : kLookedAt) {
-    forEach(looking, [&](int lane) { arrays_.fraction[lane] = fraction; });
+    forEach(stepped, [&](int lane) { arrays_.fraction[lane] = fraction; });
     calcGuardsWithin();
+    for (int k = 0; k < events_->getDipCount(); ++k) {
+      for (int lane = 0; lane < count_; ++lane) {
+        *dips++ = events_->getDip(k, lane);
+      }
+    }
     forEach(looking, [&](int lane) {
       EventBracket& bracket = brackets_[lane];
       const double smallest = events_->calcSmallest(lane);
@@ -35,13 +58,44 @@ unsigned LanePacket::findEvents() {
       (smallest <= 0.0 ? bracket.at_high : bracket.at_low) = smallest;
     });
     looking &= ~found;
-    if (looking == 0) {
+    if (looking == 0 && events_->getDipCount() == 0) {
       break;
     }
   }
+  found = findDips(stepped, found);
   if (found != 0) {
     narrow(found);
     forEach(found, [this](int lane) { endStepAtEvent(lane); });
+  }
+  return found;
+}
+
+/// Adds lanes with an event between looks to those that are found, whose events may come earlier too. Behind
+/// an event the step goes on as if there were none, so that a parabola is seen as a whole.
+unsigned LanePacket::findDips(unsigned looking, unsigned found) {
+  const int all = events_->getDipCount() * count_;
+  for (int k = 0; k < events_->getDipCount() && looking != 0; ++k) {
+    unsigned dipping = 0;
+    forEach(looking, [&](int lane) {
+      const double* d = dips_.data() + k * count_ + lane;
+      const double early = findDip(d[0], d[all], d[2 * all], kLookedAt[1], -2.0, 0.5);
+      const double late = findDip(d[all], d[2 * all], d[3 * all], kLookedAt[2], -0.5, 1.0);
+      arrays_.fraction[lane] = early > 0.0 ? early : late;
+      dipping |= arrays_.fraction[lane] > 0.0 ? 1u << lane : 0u;
+    });
+    if (dipping == 0) {
+      continue;
+    }
+    forEach(looking & ~dipping, [&](int lane) { arrays_.fraction[lane] = 1.0; });
+    calcGuardsWithin();
+    forEach(dipping, [&](int lane) {
+      const double smallest = events_->calcSmallest(lane), fraction = arrays_.fraction[lane];
+      const bool first = (found & 1u << lane) == 0 || fraction < brackets_[lane].high;
+      if (smallest <= 0.0 && first) {
+        found |= 1u << lane;
+        brackets_[lane] = {kApart * std::floor(fraction / kApart), fraction, 0.0, smallest};
+      }
+    });
   }
   return found;
 }

@@ -42,6 +42,7 @@ class LanePacket {
   void beginAfterJump(int lane);
   void moveBack(int lane);
   unsigned findEvents();
+  unsigned findDips(unsigned looking, unsigned found);
   void calcGuardsWithin();
   void narrow(unsigned lanes);
   void endStepAtEvent(int lane);
@@ -81,6 +82,7 @@ class LanePacket {
   unsigned settling_ = 0;  ///< lanes in which events may be due
   std::vector<EventBracket> brackets_;
   std::vector<double> event_times_;
+  std::vector<double> dips_;  ///< of the looks of a step, each of all lanes
   std::optional<StateProjection> projection_;
   std::vector<const double*> derivatives_, pivots_;
   std::vector<double> absolute_, relative_;

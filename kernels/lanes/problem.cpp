@@ -143,7 +143,10 @@ void compileEvents(Recorder& recorder, const Equations& equations, const std::ve
   for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
     append(calcTangents(equations.guards, makeSeeds(recorder, equations, directions, j)), changes);
   }
-  problem.guard = compile(recorder, equations.guards, equations.counts);
+  std::vector<Symbol> looked_at = equations.guards;
+  append(equations.dips, looked_at);
+  problem.dip_count = static_cast<int>(equations.dips.size());
+  problem.guard = compile(recorder, looked_at, equations.counts);
   problem.guard_change = compile(recorder, changes, counts);
   problem.transition = compileJump(recorder, equations, equations.transitions, directions, counts);
 }

@@ -35,6 +35,10 @@ struct Equations {
   /// Where solutions satisfy conditions that steps leave by their error: the states near y that satisfy them,
   /// one a state. Empty: there are none.
   std::vector<program::Symbol> projection{};
+  /// Of each guard a smooth function that is not positive only where the guard may not be either: what moves
+  /// by a polynomial takes steps so long that a guard could fall below 0 and return between two looks. Empty:
+  /// none is looked for.
+  std::vector<program::Symbol> dips{};
 };
 
 /// What is integrated: the states and, behind them, their derivatives with respect to each direction (a
@@ -52,8 +56,8 @@ struct Problem {
   /// Without outputs: none.
   program::Program jump{};
   program::Program projection{};  ///< of all rows; without outputs where there is none
-  int guard_count = 0, event_input = -1;
-  program::Program guard{};         ///< of the states alone
+  int guard_count = 0, dip_count = 0, event_input = -1;
+  program::Program guard{};         ///< guards, then dips, of the states alone
   program::Program guard_change{};  ///< their rates along the solution, then their changes by direction
   program::Program transition{};    ///< all rows behind an event; inputs as those of `jump`
 

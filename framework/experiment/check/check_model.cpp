@@ -172,17 +172,26 @@ class ModelCheck {
     }
   }
 
-  /// <signal>_dot, unless something else has the name.
+  /// <signal>_dot and <signal>_ddot, unless something else has the name.
   void declareSignalRates() {
-    constexpr double kSomeRate = 0.83;
     for (const SignalSpec& signal : model_.excitation) {
-      const Name rate{signal.name.text + "_dot", signal.name.where};
-      const std::vector<std::string>& names = fields_.dynamics.getNames();
-      if (std::find(names.begin(), names.end(), rate.text) == names.end()) {
-        const std::string unit = makeRateUnit(signal.unit);
-        fields_.dynamics.define(rate, unit.empty() ? std::nullopt : std::make_optional(parseUnit(unit, {})),
-                                kSomeRate);
-      }
+      const std::string unit = makeRateUnit(signal.unit);
+      declareRate({signal.name.text + "_dot", signal.name.where}, unit);
+      declareRate({signal.name.text + "_ddot", signal.name.where}, makeRateUnit(unit));
+    }
+  }
+
+  void declareRate(const Name& rate, const std::string& unit) {
+    constexpr double kSomeRate = 0.83;
+    const auto has = [&](const auto& items) {
+      return std::any_of(items.begin(), items.end(),
+                         [&](const auto& item) { return item.name.text == rate.text; });
+    };
+    const std::vector<std::string>& names = fields_.dynamics.getNames();
+    if (std::find(names.begin(), names.end(), rate.text) == names.end() && !has(model_.system.states) &&
+        !has(model_.system.expressions)) {
+      fields_.dynamics.define(rate, unit.empty() ? std::nullopt : std::make_optional(parseUnit(unit, {})),
+                              kSomeRate);
     }
   }
 
@@ -221,6 +230,9 @@ class ModelCheck {
   static std::pair<Name, Name> getBodies(const ConstraintSpec& constraint) {
     if (constraint.point_in_plane) {
       return {constraint.point_in_plane->plane.body, constraint.point_in_plane->station.body};
+    }
+    if (constraint.rolling) {
+      return {constraint.rolling->plane.body, constraint.rolling->center.body};
     }
     if (constraint.weld || constraint.pin) {
       return constraint.weld ? std::pair(constraint.weld->from.body, constraint.weld->to.body)

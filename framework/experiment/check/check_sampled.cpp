@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/field_check.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 
 namespace twinmap {
@@ -87,11 +88,11 @@ class ControllerCheck {
     constexpr double kSomeSignal = 0.71, kSomeRate = 0.83;
     for (const SignalSpec& signal : model.excitation) {
       common_.define(signal.name, CheckScope::readUnit(signal.unit, signal.name.where), kSomeSignal);
-      const std::string rate = signal.unit.empty()  ? ""
-                               : signal.unit == "-" ? "1/s"
-                                                    : "(" + signal.unit + ")/s";
+      const std::string rate = makeRateUnit(signal.unit);
       common_.define({signal.name.text + "_dot", signal.name.where},
                      CheckScope::readUnit(rate, signal.name.where), kSomeRate);
+      common_.define({signal.name.text + "_ddot", signal.name.where},
+                     CheckScope::readUnit(makeRateUnit(rate), signal.name.where), kSomeRate);
     }
     common_.defineTime();
     defineHeld(model.system.controllers, common_);

@@ -44,6 +44,22 @@ void describe(Fields& f, PointInPlaneSpec& s) {
   f.required("plane", s.plane, "what it stays in");
 }
 
+/// A ball or wheel whose center stays a radius from a plane, on the side of its normal, and which touches it
+/// without slip: the material of both has one velocity there.
+struct RollingSpec {
+  StationSpec center;
+  Expression radius;
+  PlaneSpec plane;
+};
+
+template <class Fields>
+void describe(Fields& f, RollingSpec& s) {
+  f.required("body", s.center.body, "the wheel or ball", Reference::kBody);
+  f.optional("point", s.center.point, "its center, in its frame", Unit{"m"});
+  f.required("radius", s.radius, "above 0", Unit{"m"});
+  f.required("plane", s.plane, "what it rolls on");
+}
+
 /// Two frames of bodies that are one: no motion between them.
 struct WeldSpec {
   AttachedFrameSpec from, to;
@@ -90,6 +106,7 @@ struct ConstraintSpec {
   std::optional<GearSpec> gear;
   std::optional<WeldSpec> weld;
   std::optional<PinSpec> pin;
+  std::optional<RollingSpec> rolling;
 };
 
 template <class Fields>
@@ -102,7 +119,8 @@ void describe(Fields& f, ConstraintSpec& s) {
           choice("point_in_plane", s.point_in_plane, "a point stays in a plane of another body"),
           choice("gear", s.gear, "two coordinates move in a ratio: gears, belts, racks"),
           choice("weld", s.weld, "two frames of bodies are one"),
-          choice("pin", s.pin, "two frames of bodies share origin and z axis"));
+          choice("pin", s.pin, "two frames of bodies share origin and z axis"),
+          choice("rolling", s.rolling, "a wheel or ball rolls on a plane without slip"));
 }
 
 }  // namespace twinmap

@@ -28,7 +28,7 @@ void addElements(const std::vector<Element>& elements, int kind, std::vector<Nam
 
 ForceParts getParts(const ConstraintSpec& constraint) {
   const bool moment = constraint.weld || constraint.pin;
-  const bool along = constraint.rod || constraint.point_in_plane || constraint.gear;
+  const bool along = constraint.rod || constraint.point_in_plane || constraint.gear || constraint.rolling;
   return {along, !constraint.gear, moment};
 }
 
@@ -40,7 +40,8 @@ const char* getKind(const ConstraintSpec& constraint) {
          : constraint.point_in_plane ? "point_in_plane"
          : constraint.gear           ? "gear"
          : constraint.weld           ? "weld"
-                                     : "pin";
+         : constraint.pin            ? "pin"
+                                     : "rolling";
 }
 
 std::vector<NamedForce> listNamedForces(const SystemSpec& system) {

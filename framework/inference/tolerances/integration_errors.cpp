@@ -68,15 +68,25 @@ std::optional<IntegrationError> IntegrationErrors::calc(const SimulationSpec& si
   model.simulation = simulation;
   const std::unique_ptr<Simulator> simulator = makeTrustedSimulator(model, layout_.times, layout_.modes);
   const std::unique_ptr<Simulator> precise = simulator->clonePrecisely();
-  if (!precise) {
-    return std::nullopt;
-  }
+  return precise ? compare(*simulator, *precise) : std::nullopt;
+}
+
+std::optional<IntegrationError> IntegrationErrors::calcChange(const SimulationSpec& simulation,
+                                                              ModelSpec other) {
+  ModelSpec model = experiment_.model;
+  model.simulation = other.simulation = simulation;
+  return compare(*makeTrustedSimulator(model, layout_.times, layout_.modes),
+                 *makeTrustedSimulator(other, layout_.times, layout_.modes));
+}
+
+std::optional<IntegrationError> IntegrationErrors::compare(const Simulator& simulator,
+                                                           const Simulator& other) {
   constexpr Index kFirst = 4;  // where none succeeds, as with a force that chatters, all would take minutes
-  if (!generateSamples(*simulator, points_.leftCols(kFirst)).responses.array().isFinite().any()) {
+  if (!generateSamples(simulator, points_.leftCols(kFirst)).responses.array().isFinite().any()) {
     return std::nullopt;
   }
-  const MatrixXd responses = generateSamples(*precise, points_).responses;
-  const MatrixXd errors = getExtractor().extract(generateSamples(*simulator, points_).responses) -
+  const MatrixXd responses = generateSamples(other, points_).responses;
+  const MatrixXd errors = getExtractor().extract(generateSamples(simulator, points_).responses) -
                           getExtractor().extract(responses);
   if (whiteners_.empty()) {
     whiten(responses);
@@ -98,7 +108,7 @@ std::optional<IntegrationError> IntegrationErrors::calc(const SimulationSpec& si
     return bound;
   }
   if (sensitivities_.empty()) {
-    linearize(*simulator);
+    linearize(simulator);
   }
   std::vector<FeatureError> linearized;
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -24,7 +24,11 @@ class IntegrationErrors {
   /// derivatives the first time that the error is not far below the noise.
   std::optional<IntegrationError> calc(const SimulationSpec& simulation);
 
+  /// What another model of the same parameters and outputs changes, both at these tolerances, likewise.
+  std::optional<IntegrationError> calcChange(const SimulationSpec& simulation, ModelSpec other);
+
  private:
+  std::optional<IntegrationError> compare(const Simulator& simulator, const Simulator& other);
   /// Of the features in their linear form, where they have one: known without sampling.
   const FeatureNoise& getNoise() const { return noise_.getLinearForm(); }
   const FeatureExtractor& getExtractor() const { return getNoise().getExtractor(); }

@@ -11,7 +11,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/feature_spec.hpp"
-#include "framework/inference/tolerances/integration_errors.hpp"
+#include "framework/inference/tolerances/onset_speeds.hpp"
 
 namespace twinmap {
 namespace {
@@ -146,6 +146,9 @@ ExperimentSpec followNoise(ExperimentSpec experiment) {
     }
   }
   simulation = fixed;
+  if (const std::string warning = describeOnsetSpeeds(experiment, errors); !warning.empty()) {
+    logWarning(warning);
+  }
   return experiment;
 }
 

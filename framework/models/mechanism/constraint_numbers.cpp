@@ -22,13 +22,17 @@ ConstraintNumbers calcOneConstraint(const ConstraintSpec& spec, const SystemName
     one.to = {names.findBody(to.body), one.to_frame.point};
     return one;
   }
-  if (spec.point_in_plane) {
-    const PlaneSpec& plane = spec.point_in_plane->plane;
+  if (spec.point_in_plane || spec.rolling) {
+    const PlaneSpec& plane = spec.rolling ? spec.rolling->plane : spec.point_in_plane->plane;
     one.from = {names.findBody(plane.body), calcVector(numbers, plane.point, {owner, "point", "m"})};
-    one.to = calcBodyPoint(spec.point_in_plane->station, names, numbers, owner);
+    one.to = calcBodyPoint(spec.rolling ? spec.rolling->center : spec.point_in_plane->station, names, numbers,
+                           owner);
     one.normal = calcVector(numbers, plane.normal, {owner, "normal", ""});
     if (one.normal.squaredNorm() == 0.0) {
       throw SimulationFailure(owner + ": normal must not be zero", plane.normal[0].where);
+    }
+    if (spec.rolling) {
+      one.length = numbers.calcPositive(spec.rolling->radius, {owner, "radius", "m"});
     }
     return one;
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -63,6 +65,20 @@ bool isUnstable(const Eigen::MatrixXd& matrix) {
   return eigenvalues.real().maxCoeff() > kRounding * eigenvalues.cwiseAbs().maxCoeff();
 }
 
+/// What equilibrium and modes do not see: what switches acts between events alone.
+std::string describeLeftOut(const SystemSpec& system) {
+  const auto& stops = system.elements.get<Stop>();
+  const auto& frictions = system.elements.get<Friction>();
+  std::vector<std::string> parts;
+  if (std::any_of(stops.begin(), stops.end(), [](const auto& stop) { return stop.isRigid(); })) {
+    parts.emplace_back("stops with restitution");
+  }
+  if (std::any_of(frictions.begin(), frictions.end(), [](const auto& one) { return one.switches(); })) {
+    parts.emplace_back("friction with model: coulomb");
+  }
+  return joinFirst(parts);
+}
+
 /// At the centre of the bounds.
 void appendRest(ModelContext& context, const LaneModel& lanes, const VectorXd& box_center,
                 std::vector<std::string>& lines) {
@@ -75,9 +91,14 @@ void appendRest(ModelContext& context, const LaneModel& lanes, const VectorXd& b
     const Eigen::MatrixXd matrix = LaneModes(lanes).calcMatrix(center, equilibrium);
     lines.push_back(describeLine("equilibrium", describeEquilibrium(context.names, equilibrium) +
                                                     (isUnstable(matrix) ? " (unstable)" : "")));
-    lines.push_back(describeLine("modes", describeModes(calcModes(matrix))));
+    const bool sampled = !context.model.system.controllers.empty();
+    lines.push_back(describeLine("modes", describeModes(calcModes(matrix)) +
+                                              (sampled ? ", with the outputs of controllers held" : "")));
   } catch (const SimulationFailure& failure) {
     lines.push_back(describeLine("equilibrium", std::string("none near the start: ") + failure.what()));
+  }
+  if (const std::string left_out = describeLeftOut(context.model.system); !left_out.empty()) {
+    lines.push_back(describeLine("without", left_out));
   }
 }
 

@@ -126,7 +126,9 @@ class MultibodySimulator::Impl {
     }
     shared_->jumps = listJumps(shared_->model.system);
     chooseEngine(context_, check == ModelCheck::kBySimbody ? &updSimbody() : nullptr, *shared_);
-    const bool in_lanes = check == ModelCheck::kTrusted || !shared_->model.system.motions.empty();
+    const SystemSpec& system = shared_->model.system;
+    const bool in_lanes =
+        check == ModelCheck::kTrusted || !system.motions.empty() || !system.controllers.empty();
     shared_->box_center = in_lanes && shared_->lanes ? solveBoxCenter(context_, shared_->lanes->getValues())
                                                      : updSimbody().solveBoxCenter();
     makeLanes();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/text/nearest_name.hpp"
+#include "framework/experiment/model/named_forces.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,6 +19,28 @@ void addStill(SystemSpec& system, const Name& name, const Expression& initial, c
 template <class Items, class Rule>
 void removeIf(Items& items, Rule rule) {
   items.erase(std::remove_if(items.begin(), items.end(), rule), items.end());
+}
+
+/// Takes elements that switch out, and what outputs show of them; dampers that begin at a touch, out of
+/// theirs.
+void removeSwitches(ModelSpec& model) {
+  ForceElements<Expression>& elements = model.system.elements;
+  removeIf(elements.get<Stop>(), [](const auto& stop) { return stop.isRigid(); });
+  removeIf(elements.get<Friction>(), [](const auto& friction) { return friction.switches(); });
+  for (Stop<Expression>& stop : elements.get<Stop>()) {
+    stop.damping.reset();
+  }
+  for (Contact<Expression>& contact : elements.get<Contact>()) {
+    contact.damping.reset();
+  }
+  for (OutputSpec& output : model.outputs) {
+    if (output.force_of && !findNamedForce(model.system, output.force_of->text)) {
+      output.expression = {"0", output.force_of->where};
+      output.unit = "1";
+      output.force_of.reset();
+      output.component.reset();
+    }
+  }
 }
 
 /// Of the first that satisfies a rule, "system.stops[1].restitution"; "" if none does.
@@ -57,16 +80,16 @@ ModelSpec addControllerStates(ModelSpec model) {
 }
 
 ModelSpec removeSampled(ModelSpec model) {
-  model.system.controllers.clear();
-  if (!model.system.motions.empty()) {
-    model.system.motions.clear();
-    model.initial.equilibrium.reset();  // where a table hangs on nothing there is none
+  if (!model.system.motions.empty() || !model.system.controllers.empty()) {
+    model.initial.equilibrium
+        .reset();  // where a table hangs on nothing, or no controller holds, there is none
   }
+  model.system.motions.clear();
+  model.system.controllers.clear();
   for (OutputSpec& output : model.outputs) {
     output.sensor.reset();
   }
-  removeIf(model.system.elements.get<Stop>(), [](const auto& stop) { return stop.isRigid(); });
-  removeIf(model.system.elements.get<Friction>(), [](const auto& friction) { return friction.switches(); });
+  removeSwitches(model);
   return model;
 }
 
@@ -85,10 +108,17 @@ std::string findSampledKey(const ModelSpec& model) {
   const ForceElements<Expression>& elements = model.system.elements;
   const std::string stop = findElementKey(
       elements.get<Stop>(), [](const auto& one) { return one.isRigid(); }, "stops", ".restitution");
-  return !stop.empty() ? stop
-                       : findElementKey(
-                             elements.get<Friction>(), [](const auto& one) { return one.switches(); },
-                             "friction", ".model: coulomb");
+  const std::string friction = findElementKey(
+      elements.get<Friction>(), [](const auto& one) { return one.switches(); }, "friction",
+      ".model: coulomb");
+  const auto is_damped = [](const auto& one) { return one.damping.has_value(); };
+  const std::string damped = findElementKey(elements.get<Stop>(), is_damped, "stops", ".damping");
+  for (const std::string& key : {stop, friction, damped}) {
+    if (!key.empty()) {
+      return key;
+    }
+  }
+  return findElementKey(elements.get<Contact>(), is_damped, "contacts", ".damping");
 }
 
 }  // namespace twinmap

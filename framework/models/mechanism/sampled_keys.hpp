@@ -14,8 +14,8 @@ int findSignal(const ModelSpec& model, const Name& signal);
 ModelSpec addControllerStates(ModelSpec model);
 
 /// The model without what only lanes simulate: sensors that remember, round or clip, prescribed motions,
-/// controllers, whose states stand still, and what switches: rigid stops and friction that sticks. `model`:
-/// of addControllerStates().
+/// controllers, whose states stand still, and what switches: rigid stops, friction that sticks, whose forces
+/// outputs then show as 0, and dampers that begin at a touch. `model`: of addControllerStates().
 ModelSpec removeSampled(ModelSpec model);
 
 /// The first key that removeSampled() takes out, such as "outputs.q.sensor"; "" if there is none.

@@ -62,26 +62,48 @@ inline void forEachOutputExpression(const std::vector<OutputSpec>& outputs, cons
   }
 }
 
-/// The name of a signal's rate in expressions.
-inline std::string nameRate(const SignalSpec& signal) {
-  return signal.name.text + "_dot";
-}
-
-/// Whether any expression uses the rate of a signal: only then is it computed.
-inline bool usesSignalRates(const ModelSpec& model) {
-  bool uses = false;
+/// The names that expressions of forces, states and outputs use, and those of named expressions.
+inline std::vector<std::string> listUsedNames(const ModelSpec& model) {
+  std::vector<std::string> used;
   const ExpressionAction look = [&](const Expression& expression) {
     const std::vector<std::string> names = getUsedNames(expression);
-    for (const SignalSpec& signal : model.excitation) {
-      uses = uses || std::find(names.begin(), names.end(), nameRate(signal)) != names.end();
-    }
+    used.insert(used.end(), names.begin(), names.end());
   };
   forEachForceExpression(model.system, look);
   forEachOutputExpression(model.outputs, look);
   for (const NamedExpression& named : model.system.expressions) {
     look(named.value);
   }
-  return uses;
+  return used;
+}
+
+/// In expressions, of all signals those of their rates (<signal>_dot), then, for two orders, of the rates of
+/// these (<signal>_ddot).
+inline std::vector<std::string> nameSignalRates(const std::vector<SignalSpec>& signals, int orders) {
+  std::vector<std::string> names;
+  for (int order = 1; order <= orders; ++order) {
+    for (const SignalSpec& signal : signals) {
+      names.push_back(signal.name.text + (order == 1 ? "_dot" : "_ddot"));
+    }
+  }
+  return names;
+}
+
+/// How many orders of time derivatives of signals expressions use, 0 to 2: only those are computed. What a
+/// state or a named expression is called is theirs.
+inline int countSignalRates(const ModelSpec& model) {
+  const std::vector<std::string> used = listUsedNames(model);
+  const auto isOwn = [&](const auto& items, const std::string& name) {
+    return std::any_of(items.begin(), items.end(), [&](const auto& item) { return item.name.text == name; });
+  };
+  const std::vector<std::string> names = nameSignalRates(model.excitation, 2);
+  int orders = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const bool uses = std::find(used.begin(), used.end(), names[i]) != used.end() &&
+                      !isOwn(model.system.states, names[i]) && !isOwn(model.system.expressions, names[i]);
+    orders = uses ? std::max(orders, i < model.excitation.size() ? 1 : 2) : orders;
+  }
+  return orders;
 }
 
 }  // namespace twinmap

@@ -105,4 +105,9 @@ double CubicSpline::calcSlope(double elapsed) const {
   return segment.slope + s * (2.0 * segment.curvature + 3.0 * s * segment.third);
 }
 
+double CubicSpline::calcCurvature(double elapsed) const {
+  const Segment& segment = segments_[findSegment(elapsed)];
+  return 2.0 * segment.curvature + 6.0 * (elapsed - segment.begin) * segment.third;
+}
+
 }  // namespace twinmap

@@ -17,6 +17,7 @@ class CubicSpline {
   double calc(double elapsed) const;
 
   double calcSlope(double elapsed) const;
+  double calcCurvature(double elapsed) const;  ///< the second derivative
 
   struct Segment {
     double begin;                           ///< s after the first time

@@ -140,9 +140,16 @@ void Excitation::calcValues(double t, std::vector<double>& values) const {
 
 void Excitation::calcRates(double t, std::vector<double>& rates) const {
   std::fill(rates.begin(), rates.end(), 0.0);
+  const std::size_t count = signals_.size();
   for (const ExcitationTerm* term : active_) {
-    rates[term->signal] += std::visit(
-        [elapsed = t - term->begin](const auto& shape) { return shape.calcRate(elapsed); }, term->shape);
+    std::visit(
+        [&, elapsed = t - term->begin](const auto& shape) {
+          rates[term->signal] += shape.calcRate(elapsed);
+          if (rates.size() > count) {
+            rates[count + term->signal] += shape.calcSecondRate(elapsed);
+          }
+        },
+        term->shape);
   }
 }
 

@@ -18,6 +18,7 @@ struct LineShape {
 
   double calc(double elapsed) const { return value + slope * elapsed; }
   double calcRate(double) const { return slope; }
+  double calcSecondRate(double) const { return 0.0; }
 };
 
 struct SplineShape {
@@ -25,6 +26,7 @@ struct SplineShape {
 
   double calc(double elapsed) const { return spline->calc(elapsed); }
   double calcRate(double elapsed) const { return spline->calcSlope(elapsed); }
+  double calcSecondRate(double elapsed) const { return spline->calcCurvature(elapsed); }
 };
 
 /// A function, smooth enough to integrate across, that is switched on for begin <= t < end.
@@ -65,7 +67,8 @@ class Excitation {
 
   /// Value of every signal at time t in the current phase; `values` has getSignalCount() entries.
   void calcValues(double t, std::vector<double>& values) const;
-  /// The time derivatives likewise; a jump between two phases has none.
+  /// The time derivatives likewise, and where `rates` has twice as many entries behind them those of second
+  /// order; a jump between two phases has none.
   void calcRates(double t, std::vector<double>& rates) const;
 
  private:

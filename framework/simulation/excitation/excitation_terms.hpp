@@ -20,6 +20,7 @@ struct PulseShape {
 
   S calc(const S&) const { return value; }
   S calcRate(const S&) const { return 0.0; }
+  S calcSecondRate(const S&) const { return 0.0; }
 };
 
 /// amplitude * sum of weight * sin(omega * elapsed + phase)
@@ -48,6 +49,14 @@ struct ToneShape {
     }
     return amplitude * sum;
   }
+  S calcSecondRate(const S& elapsed) const {
+    using namespace program::real;
+    S sum = 0.0;
+    for (const Tone& tone : tones) {
+      sum -= tone.weight * tone.omega * tone.omega * sin(tone.omega * elapsed + tone.phase);
+    }
+    return amplitude * sum;
+  }
 };
 
 /// amplitude * sin(2 pi cycles) after s = elapsed; linear: f0 s + (f1 - f0) s^2 / (2 duration), logarithmic:
@@ -64,10 +73,21 @@ struct ChirpShape {
   }
   S calcRate(const S& elapsed) const {
     using namespace program::real;
+    return amplitude * kRadiansPerCycle * calcFrequency(elapsed) *
+           cos(kRadiansPerCycle * calcCycles(elapsed));
+  }
+  S calcSecondRate(const S& elapsed) const {
+    using namespace program::real;
+    const S frequency = calcFrequency(elapsed), omega = kRadiansPerCycle * frequency;
+    const S growth = sweep == SweepKind::kLogarithmic ? S(frequency * log(last / first) / duration)
+                                                      : S((last - first) / duration);
+    const S angle = kRadiansPerCycle * calcCycles(elapsed);
+    return amplitude * (kRadiansPerCycle * growth * cos(angle) - omega * omega * sin(angle));
+  }
+  S calcFrequency(const S& elapsed) const {
+    using namespace program::real;
     const S rising = first + (last - first) / duration * elapsed;
-    const S frequency =
-        sweep == SweepKind::kLogarithmic ? S(first * exp(log(last / first) / duration * elapsed)) : rising;
-    return amplitude * kRadiansPerCycle * frequency * cos(kRadiansPerCycle * calcCycles(elapsed));
+    return sweep == SweepKind::kLogarithmic ? S(first * exp(log(last / first) / duration * elapsed)) : rising;
   }
   S calcCycles(const S& elapsed) const {
     using namespace program::real;

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/inference/tolerances/integration_errors.hpp"
+#include "framework/inference/tolerances/onset_speeds.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {
@@ -55,6 +55,18 @@ TEST(Tolerances, DoNotFollowWhatIsNotThere) {
                                      Overrides{"noise.scale=1e-4", "simulation.integrator=cpodes"}}) {
     EXPECT_EQ(follow(kCart, overrides).relative_tolerance, 3e-7);
   }
+}
+
+TEST(Tolerances, WarnOfAnOnsetSpeedOnWhichEstimatesDepend) {
+  const auto describe = [](const std::string& onset) {
+    const ExperimentSpec experiment = loadExperiment(
+        kCart,
+        {"system.friction=[{coordinate: x, model: regularised, coulomb: 0.05, onset_speed: " + onset + "}]"});
+    IntegrationErrors errors(experiment);
+    return describeOnsetSpeeds(experiment, errors);
+  };
+  EXPECT_NE(describe("0.3").find("half of it moves d by up to"), std::string::npos) << describe("0.3");
+  EXPECT_EQ(describe("1e-5"), "");
 }
 
 TEST(Tolerances, DoNotDependOnTheSeed) {

@@ -141,6 +141,38 @@ TEST(Events, AreDueWhereAPhaseBeginsThatMakesThem) {
   EXPECT_NEAR(batch.derivatives[1], 2.0 * p + 1.5 - p, 1e-9);
 }
 
+/// y'' = 1 from p at the speed -1, which the method solves in one step however long: y is below 0 for a while
+/// of it. There the speed becomes 1.
+TEST(Events, AreFoundWhereAGuardDipsBetweenTwoLooks) {
+  Recorder r;
+  Equations equations;
+  equations.counts = {2, 1, 1};
+  equations.derivatives = {r.state(1), 1.0};
+  equations.outputs = {r.state(0)};
+  equations.guards = equations.dips = {r.state(0)};
+  equations.transitions = {r.state(0), select(less(Symbol(0.0), r.phaseInput(0)), Symbol(1.0), r.state(1))};
+  equations.event_input = 0;
+  Integrator integrator(makeProblem(r, equations, {0}), {20.0}, {}, kSteps4);
+  Batch batch;
+  const double starts[] = {0.3, 0.45, 0.4999};
+  for (const double p : starts) {
+    Sample sample;
+    sample.parameters = {p};
+    sample.initial = {p, -1.0, 1.0, 0.0};
+    sample.phases = {{0.0, {0.0}}};
+    sample.end = 20.0;
+    batch.add(sample, 1, 1);
+  }
+  batch.run(integrator);
+  for (int j = 0; j < 3; ++j) {
+    ASSERT_EQ(batch.results[j].outcome, Outcome::kDone);
+    EXPECT_EQ(batch.results[j].events, 1);
+    const double root = std::sqrt(1.0 - 2.0 * starts[j]), since = 19.0 + root;
+    EXPECT_NEAR(batch.outputs[j], since + 0.5 * since * since, 1e-6);
+    EXPECT_NEAR(batch.derivatives[j], -(1.0 + since) / root, 1e-4 / root);
+  }
+}
+
 /// A guard that its own event leaves at 0.
 TEST(Events, WithoutProgressFailWithTheirTime) {
   Recorder r;

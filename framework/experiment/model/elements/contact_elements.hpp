@@ -7,10 +7,11 @@
 #include "framework/experiment/model/elements/element.hpp"
 #include "framework/experiment/model/elements/memory_elements.hpp"
 
-// Elements that push while something is pressed in, and never pull. Their forces have no jump, so that
-// derivatives of the response are exact without events: what loses energy is in proportion to the depth (Hunt
-// and Crossley, J. Applied Mechanics 42, 1975, p. 440), not a damper that acts from the first touch on. Stops
-// with a restitution are rigid: they switch (models/mechanism/equations/switches.hpp).
+// Elements that push while something is pressed in, and never pull. By default their forces have no jump, so
+// that derivatives of the response are exact without events: what loses energy is in proportion to the depth
+// (Hunt and Crossley, J. Applied Mechanics 42, 1975, p. 440). A `damping` acts from the first touch on, which
+// is an event, and stops with a restitution are rigid: these switch
+// (models/mechanism/equations/switches.hpp).
 
 namespace twinmap {
 
@@ -51,6 +52,15 @@ S calcContactForce(const ContactLaw<S>& law, const S& depth, const S& rate) {
   return elastic * max(one + law.dissipation * rate, zero);
 }
 
+/// With a damper while it is pressed: at least 0. `touch`: the element's mode.
+template <class S, class Sum>
+S calcContactForce(const ContactLaw<S>& law, const std::optional<S>& damping, int touch, const S& depth,
+                   const S& rate, const Sum& sum) {
+  using namespace program::real;
+  const S force = calcContactForce(law, depth, rate);
+  return damping ? max(force + sum.calcTouching(touch, depth) * (*damping * rate), S(0.0)) : force;
+}
+
 /// A one-sided stop of a coordinate, or of its difference to another, beyond `above` or `below`. An elastic
 /// one pushes it back; a rigid one, which has a `restitution` e, throws it back at e times its speed.
 template <class S>
@@ -59,9 +69,10 @@ struct Stop {
   CoordinateOf<S> coordinate{};
   OtherCoordinateOf<S> against{};
   std::optional<S> above{}, below{};
-  std::optional<S> stiffness{}, exponent{}, dissipation{};
+  std::optional<S> stiffness{}, exponent{}, dissipation{}, damping{};
   std::optional<S> restitution{};
   OwnNameOf<S> name{};
+  int touch = -1;  ///< of one with damping: its place among the modes of switches
 
   bool isRigid() const { return restitution.has_value(); }
 };
@@ -79,14 +90,17 @@ void describe(Fields& f, Stop<S>& s) {
   f.optional("exponent", s.exponent, "of the depth; 1.5 for spheres (Hertz); default 1", Unit{"1"});
   f.optional("dissipation", s.dissipation, "share of the force for each unit of speed; default 0",
              Unit{"s/m", "s/rad"});
+  f.optional("damping", s.damping, "of an elastic stop: force for each unit of speed, from the touch on",
+             Unit{"N s/m", "N m s/rad"});
   f.optional("restitution", s.restitution, "of a rigid stop: speed behind an impact for that before, 0 to 1",
              Unit{"1"});
   describeName(f, s.name);
   f.rule(s.above.has_value() != s.below.has_value(), "must give either 'above' or 'below'");
   f.rule(s.stiffness.has_value() != s.restitution.has_value(),
          "must give either 'stiffness' (an elastic stop) or 'restitution' (a rigid one)");
-  f.rule(!s.restitution || (!s.exponent && !s.dissipation),
-         "must not give 'exponent' or 'dissipation' with 'restitution': they are of an elastic stop");
+  f.rule(
+      !s.restitution || (!s.exponent && !s.dissipation && !s.damping),
+      "must not give 'exponent', 'dissipation' or 'damping' with 'restitution': they are of an elastic stop");
 }
 
 /// How far a coordinate is from the stop: positive where it is free.
@@ -102,7 +116,8 @@ void addForces(const Stop<S>& s, Sum& sum) {
   }
   const S apart = sum.calcDifference(s.coordinate, s.against), rate = sum.calcSlip(s.coordinate, s.against);
   const ContactLaw<S> law{*s.stiffness, s.dissipation ? *s.dissipation : S(0.0), s.exponent};
-  const S force = calcContactForce(law, S(-calcStopGap(s, apart)), s.above ? rate : S(-rate));
+  const S force =
+      calcContactForce(law, s.damping, s.touch, S(-calcStopGap(s, apart)), s.above ? rate : S(-rate), sum);
   sum.addBetween(s.coordinate, s.against, s.above ? S(-force) : force);
 }
 
@@ -144,8 +159,9 @@ struct Contact {
   Station<S> station;
   Plane<S> plane;
   ContactLaw<S> law{};
-  std::optional<S> friction{}, onset_speed{};
+  std::optional<S> damping{}, friction{}, onset_speed{};
   OwnNameOf<S> name{};
+  int touch = -1;  ///< of one with damping: its place among the modes of switches
 };
 
 template <class Fields, class S>
@@ -154,6 +170,7 @@ void describe(Fields& f, Contact<S>& s) {
   f.optional("point", s.station.point, "of it, in its frame", Unit{"m"});
   f.required("plane", s.plane, "what it touches");
   describe(f, s.law);
+  f.optional("damping", s.damping, "force for each unit of speed, from the touch on", Unit{"N s/m"});
   f.optional("friction", s.friction, "coefficient of friction mu", Unit{"1"});
   f.optional("onset_speed", s.onset_speed, "of friction: mu N tanh(v / onset_speed)", Unit{"m/s"});
   describeName(f, s.name);
@@ -164,8 +181,8 @@ void describe(Fields& f, Contact<S>& s) {
 template <class S, class Sum>
 void addForces(const Contact<S>& s, Sum& sum) {
   using namespace program::real;
-  sum.addOnPlane(s.station, s.plane, [&s](const S& depth, const S& rate, const algebra::Vec3<S>& slip) {
-    const S pressure = calcContactForce(s.law, depth, rate);
+  sum.addOnPlane(s.station, s.plane, [&](const S& depth, const S& rate, const algebra::Vec3<S>& slip) {
+    const S pressure = calcContactForce(s.law, s.damping, s.touch, depth, rate, sum);
     if (!s.friction) {
       return std::pair(pressure, algebra::Vec3<S>{S(0.0), S(0.0), S(0.0)});
     }

@@ -116,6 +116,36 @@ void addFrames(const AttachedFrameSpec& from_spec, const AttachedFrameSpec& to_s
   }
 }
 
+/// Two unit vectors at right angles to a unit vector n and to each other (Duff and others, J. Computer
+/// Graphics Techniques 6, 2017, p. 1).
+template <class S>
+std::pair<Vec3<S>, Vec3<S>> calcPlaneDirections(const Vec3<S>& n) {
+  using namespace program::real;
+  const S one = 1.0, sign = select(less(n.z, S(0.0)), S(-one), one);
+  const S a = S(-1.0) / (sign + n.z), b = n.x * n.y * a;
+  return {{one + sign * n.x * n.x * a, sign * b, S(-sign * n.x)}, {b, sign + n.y * n.y * a, S(-n.y)}};
+}
+
+/// The center keeps the radius from the plane, and nothing slips along the plane's two directions.
+template <class S>
+void addRolling(const RollingSpec& spec, const SystemNames& system, const NamedValues<S>& names,
+                Closure<S> closure, std::vector<Closure<S>>& closures) {
+  const Vec3<S> point = names.calc3(spec.plane.point);
+  closure.normal = normalize(names.calc3(spec.plane.normal));
+  closure.length = names.calc(spec.radius);
+  closure.kind = ClosureKind::kPlane;
+  closure.from = {system.findBody(spec.plane.body), point + scale(closure.length, closure.normal)};
+  closure.to = calcStation(spec.center, system, names);
+  closures.push_back(closure);
+  closure.kind = ClosureKind::kRolling;
+  closure.from.point = point;
+  const auto [first, second] = calcPlaneDirections(closure.normal);
+  for (const Vec3<S>& direction : {first, second}) {
+    closure.across = direction;
+    closures.push_back(closure);
+  }
+}
+
 template <class S>
 void addGear(const GearSpec& gear, const SystemNames& system, const NamedValues<S>& names, Closure<S> closure,
              std::vector<Closure<S>>& closures) {
@@ -159,6 +189,8 @@ void addClosures(const ConstraintSpec& spec, int place, const SystemNames& syste
     closures.push_back(closure);
   } else if (spec.gear) {
     addGear(*spec.gear, system, names, closure, closures);
+  } else if (spec.rolling) {
+    addRolling(*spec.rolling, system, names, closure, closures);
   } else if (spec.weld) {
     addFrames(spec.weld->from, spec.weld->to, true, system, names, closure, closures);
   } else {

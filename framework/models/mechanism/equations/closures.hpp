@@ -121,6 +121,38 @@ ClosureTerms<S> calcPerpendicular(const SystemValues<S>& system, const Closure<S
   return terms;
 }
 
+/// Where what rolls touches its plane, in ground.
+template <class S>
+Vec3<S> calcTouch(const Closure<S>& closure, const std::vector<BodyMotion<S>>& motions) {
+  const Vec3<S> normal = motions[closure.from.body].pose.rotation * closure.normal;
+  return calcPoint(motions[closure.to.body], closure.to.point).place - scale(closure.length, normal);
+}
+
+/// direction . (velocity of `to` less that of `from`, both where they touch) = 0, with the direction fixed to
+/// `from`. The touching point travels along both bodies as the center does.
+template <class S>
+ClosureTerms<S> calcRolling(const SystemValues<S>& system, const Closure<S>& closure,
+                            const std::vector<BodyMotion<S>>& motions) {
+  const BodyMotion<S>&from = motions[closure.from.body], &to = motions[closure.to.body];
+  const Vec3<S>&from_spin = from.velocity.angular, &to_spin = to.velocity.angular;
+  const Vec3<S> reach = scale(S(-closure.length), from.pose.rotation * closure.normal);  // from the center
+  const Vec3<S> reach_rate = cross(from_spin, reach), direction = from.pose.rotation * closure.across;
+  const PointMotion<S> center = calcPoint(to, closure.to.point);
+  const Vec3<S> touch = center.place + reach, arm = touch - from.pose.origin;
+  const Vec3<S> slip = center.velocity + cross(to_spin, reach) - from.velocity.linear - cross(from_spin, arm);
+  const Vec3<S> of_wheel =
+      calcBiasAcceleration(to, center.arm) + cross(to.bias.angular, reach) + cross(to_spin, reach_rate);
+  const Vec3<S> of_plane = from.bias.linear + cross(from.bias.angular, arm) +
+                           cross(from_spin, center.velocity + reach_rate - from.velocity.linear);
+  ClosureTerms<S> terms;
+  terms.value = 0.0;
+  terms.row.assign(system.coordinate_count, S(0.0));
+  addColumns(system, motions, closure.to.body, closure.from.body, touch, direction, terms.row);
+  addColumns(system, motions, closure.from.body, closure.to.body, touch, -direction, terms.row);
+  terms.bias = dot(direction, of_wheel - of_plane) + dot(cross(from_spin, direction), slip);
+  return terms;
+}
+
 /// All conditions at the motions of the coordinates.
 template <class S>
 std::vector<ClosureTerms<S>> calcClosureTerms(const SystemValues<S>& system,
@@ -137,6 +169,9 @@ std::vector<ClosureTerms<S>> calcClosureTerms(const SystemValues<S>& system,
         break;
       case ClosureKind::kPerpendicular:
         all.push_back(calcPerpendicular(system, closure, motions));
+        break;
+      case ClosureKind::kRolling:
+        all.push_back(calcRolling(system, closure, motions));
         break;
       case ClosureKind::kGear: {
         ClosureTerms<S> terms{

@@ -59,8 +59,9 @@ std::vector<S> subtractResponse(const ClosureResponse<S>& response, const std::v
 template <class S>
 struct ConstrainedMotion {
   std::vector<S> accelerations;
-  std::vector<S> forces;  ///< of the conditions: M u' = f - G' forces
-  std::vector<S> pivots;  ///< of the mass matrix, then of the conditions
+  std::vector<S> forces;       ///< of the conditions: M u' = f - G' forces
+  std::vector<S> pivots;       ///< of the mass matrix, then of the conditions
+  std::vector<S> held_back{};  ///< of solveHeld(): the acceleration that each switch takes away; 0 of others
 };
 
 /// A coordinate whose acceleration is known.

@@ -161,8 +161,8 @@ void placeOwnStates(ForceElements<S>& elements, int first) {
   });
 }
 
-/// Tells friction that sticks its place among the modes of switches (switches.hpp), of which rigid stops come
-/// first.
+/// Tells friction that sticks and what touches with damping their places among the modes of switches
+/// (switches.hpp), of which rigid stops come first.
 template <class S>
 void placeSwitches(ForceElements<S>& elements) {
   int place = 0;
@@ -171,6 +171,12 @@ void placeSwitches(ForceElements<S>& elements) {
   }
   for (Friction<S>& friction : elements.template get<Friction>()) {
     friction.mode = friction.switches() ? place++ : -1;
+  }
+  for (Stop<S>& stop : elements.template get<Stop>()) {
+    stop.touch = stop.damping ? place++ : -1;
+  }
+  for (Contact<S>& contact : elements.template get<Contact>()) {
+    contact.touch = contact.damping ? place++ : -1;
   }
 }
 

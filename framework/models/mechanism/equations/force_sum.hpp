@@ -44,6 +44,28 @@ PointMotion<S> calcPoint(const BodyMotion<S>& body, const Vec3<S>& point) {
   return {arm, body.pose.origin + arm, body.velocity.linear + cross(body.velocity.angular, arm)};
 }
 
+/// How a station moves against a plane: the depth behind it and its rate, the slip in the plane as the
+/// plane's body sees it, the normal in ground axes, and where the station is from each body's origin.
+template <class S>
+struct PlaneMotion {
+  S depth, rate;
+  Vec3<S> slip, normal, arm, plane_arm;
+};
+
+template <class S>
+PlaneMotion<S> calcOnPlane(const std::vector<BodyMotion<S>>& motions, const Station<S>& station,
+                           const Plane<S>& plane) {
+  using namespace program::real;
+  const PointMotion<S> point = calcPoint(motions[station.body], station.point);
+  const BodyMotion<S>& base = motions[plane.body];
+  const S length = sqrt(dot(plane.normal, plane.normal));
+  const Vec3<S> normal = base.pose.rotation * scale(S(S(1.0) / length), plane.normal);
+  const Vec3<S> arm = point.place - base.pose.origin;
+  const Vec3<S> velocity = point.velocity - base.velocity.linear - cross(base.velocity.angular, arm);
+  const S depth = dot(normal, base.pose.rotation * plane.point - arm), rate = -dot(normal, velocity);
+  return {depth, rate, velocity + scale(rate, normal), normal, point.arm, arm};
+}
+
 /// Body-fixed x-y-z angles of a rotation, the middle one within +-90 degrees.
 template <class S>
 Vec3<S> calcAngles(const Mat33<S>& r) {
@@ -87,6 +109,11 @@ class ForceSum {
     }
     const S& side = (*modes_)[mode];
     return select(equal(side, S(1.0)), level, select(equal(side, S(-1.0)), S(-level), S(0.0)));
+  }
+  /// 1 while something touches, else 0: by its mode, or where modes are not known by its depth.
+  S calcTouching(int mode, const S& depth) const {
+    using namespace program::real;
+    return modes_ == nullptr || modes_->empty() ? less(S(0.0), depth) : (*modes_)[mode];
   }
   S calc(const Expression& expression) const { return named_.calc(expression); }
   /// Components in ground axes.
@@ -158,18 +185,11 @@ class ForceSum {
   /// `slip`: the velocity of the station in the plane, as its body sees it.
   template <class Law>
   void addOnPlane(const Station<S>& station, const Plane<S>& plane, Law law) {
-    using namespace program::real;
-    const PointMotion<S> point = calcPoint(motions_[station.body], station.point);
-    const BodyMotion<S>& base = motions_[plane.body];
-    const S length = sqrt(dot(plane.normal, plane.normal));
-    const Vec3<S> normal = base.pose.rotation * scale(S(S(1.0) / length), plane.normal);
-    const Vec3<S> arm = point.place - base.pose.origin;
-    const Vec3<S> velocity = point.velocity - base.velocity.linear - cross(base.velocity.angular, arm);
-    const S depth = dot(normal, base.pose.rotation * plane.point - arm), rate = -dot(normal, velocity);
-    const auto [pressure, in_plane] = law(depth, rate, velocity + scale(rate, normal));
-    const Vec3<S> force = scale(pressure, normal) + in_plane;
-    addAt(plane.body, arm, -force);
-    addAt(station.body, point.arm, force);
+    const PlaneMotion<S> at = calcOnPlane(motions_, station, plane);
+    const auto [pressure, in_plane] = law(at.depth, at.rate, at.slip);
+    const Vec3<S> force = scale(pressure, at.normal) + in_plane;
+    addAt(plane.body, at.plane_arm, -force);
+    addAt(station.body, at.arm, force);
     exerted_.along = pressure;
   }
 

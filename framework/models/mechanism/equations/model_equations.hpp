@@ -17,7 +17,7 @@ struct ModelState {
   S time = 0.0;
   std::vector<S> coordinates, speeds, states{};
   std::vector<S> signals{};       ///< of the excitation
-  std::vector<S> signal_rates{};  ///< empty where no expression uses them
+  std::vector<S> signal_rates{};  ///< as nameSignalRates() has them, of the orders that expressions use
   std::vector<Prescribed<S>> prescribed{};
   std::vector<S> modes{};  ///< of switches (switches.hpp); empty: none, and what switches exerts nothing
 };
@@ -33,7 +33,32 @@ struct ModelMotion {
   std::vector<Spatial<S>> loads;  ///< on bodies: gravity and force elements
   std::vector<S> closure_forces;  ///< of the conditions: they act as -G' times these
   std::vector<S> held{};          ///< forces with which switches hold their coordinates
+  std::vector<S> held_back{};     ///< accelerations that they take away
 };
+
+/// How deep something is pressed in, and how fast that grows.
+template <class S>
+struct TouchMotion {
+  S depth, rate;
+};
+
+/// Of what touches with a damper, in the order of the modes.
+template <class S>
+std::vector<TouchMotion<S>> calcTouches(const SystemValues<S>& system, const ModelState<S>& state,
+                                        const ModelMotion<S>& motion) {
+  std::vector<TouchMotion<S>> touches;
+  const Touching<S> touching = listTouching(system.elements);
+  for (const Stop<S>* stop : touching.stops) {
+    const Pair pair(*stop);
+    const S rate = pair.of(motion.rates);
+    touches.push_back({S(-calcStopGap(*stop, pair.of(state.coordinates))), stop->above ? rate : S(-rate)});
+  }
+  for (const Contact<S>* contact : touching.contacts) {
+    const PlaneMotion<S> at = calcOnPlane(motion.bodies, contact->station, contact->plane);
+    touches.push_back({at.depth, at.rate});
+  }
+  return touches;
+}
 
 /// The values that expressions of a state may use.
 template <class S>
@@ -48,10 +73,10 @@ NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, cons
     names.set(model.excitation[i].name.text, state.signals[i]);
   }
   names.set("t", state.time);
+  const std::vector<std::string> signal_rates = nameSignalRates(model.excitation, 2);
   for (std::size_t i = 0; i < state.signal_rates.size(); ++i) {
-    const std::string rate = nameRate(model.excitation[i]);
-    if (!names.contains(rate)) {
-      names.define(rate, state.signal_rates[i]);
+    if (!names.contains(signal_rates[i])) {
+      names.define(signal_rates[i], state.signal_rates[i]);
     }
   }
   for (std::size_t i = 0; i < state.states.size(); ++i) {
@@ -120,6 +145,7 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
     motion.held.push_back(-*force);
   }
   solution.forces.erase(first_held, solution.forces.end());
+  motion.held_back = std::move(solution.held_back);
   motion.loads = std::move(loads.on_bodies);
   motion.closure_forces = std::move(solution.forces);
   motion.accelerations = std::move(solution.accelerations);

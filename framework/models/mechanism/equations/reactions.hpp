@@ -47,7 +47,10 @@ ClosureAction<S> calcClosureAction(const Closure<S>& closure, const std::vector<
   }
   const BodyMotion<S>&from = motions[closure.from.body], &to = motions[closure.to.body];
   action.from_place = action.to_place = calcPoint(to, closure.to.point).place;
-  if (closure.kind == ClosureKind::kPlane) {
+  if (closure.kind == ClosureKind::kRolling) {
+    action.from_place = action.to_place = calcTouch(closure, motions);
+    action.force = scale(S(-multiplier), from.pose.rotation * closure.across);
+  } else if (closure.kind == ClosureKind::kPlane) {
     action.force = scale(S(-multiplier), from.pose.rotation * closure.normal);
   } else if (closure.kind == ClosureKind::kRod) {
     action.from_place = calcPoint(from, closure.from.point).place;
@@ -78,8 +81,8 @@ void addClosureLoads(const SystemValues<S>& system, const ModelMotion<S>& motion
 }
 
 /// What a constraint exerts, the file's `place`-th: `along` is a gear's force on its coordinate, the pull of
-/// a rod and the pressure of a plane. Of conditions that are redundant the force is not determined, and 0
-/// here.
+/// a rod and the pressure of a plane, which that of rolling is too. Of conditions that are redundant the
+/// force is not determined, and 0 here.
 template <class S>
 Exerted<S> calcConstraintForce(const SystemValues<S>& system, const ModelMotion<S>& motion, int place) {
   Exerted<S> sum;
@@ -88,7 +91,9 @@ Exerted<S> calcConstraintForce(const SystemValues<S>& system, const ModelMotion<
     if (closure.constraint == place) {
       const S& multiplier = motion.closure_forces[k];
       const ClosureAction<S> action = calcClosureAction(closure, motion.bodies, multiplier);
-      sum.along = closure.kind == ClosureKind::kRod ? multiplier : -multiplier;
+      if (closure.kind != ClosureKind::kRolling) {
+        sum.along = closure.kind == ClosureKind::kRod ? multiplier : -multiplier;
+      }
       sum.force = closure.swapped ? sum.force - action.force : sum.force + action.force;
       sum.moment = closure.swapped ? sum.moment - action.moment : sum.moment + action.moment;
     }

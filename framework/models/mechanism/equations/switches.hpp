@@ -8,10 +8,11 @@
 
 namespace twinmap::equations {
 
-// Elements that switch: rigid stops and friction that sticks. Each has a mode, which is constant between
-// events: a stop's 0 (free) or 1 (the coordinate rests on it), a friction's 0 (sticks), 1 or -1 (slides that
-// way). Stops come first. What rests or sticks is held: the rate of a coordinate, or its difference to
-// another's, stays as it is by a force that the equations of motion yield.
+// Elements that switch: rigid stops, friction that sticks, and what a damper meets at its first touch. Each
+// has a mode, which is constant between events: a stop's 0 (free) or 1 (the coordinate rests on it), a
+// friction's 0 (sticks), 1 or -1 (slides that way), a touch's 0 (apart) or 1; in this order, of touches those
+// of stops first. What rests or sticks is held: the rate of a coordinate, or its difference to another's,
+// stays as it is by a force that the equations of motion yield.
 
 template <class S>
 std::vector<const Stop<S>*> listRigidStops(const ForceElements<S>& elements) {
@@ -35,9 +36,35 @@ std::vector<const Friction<S>*> listSticking(const ForceElements<S>& elements) {
   return frictions;
 }
 
+/// Elements whose damper acts from the touch on, as they have modes.
+template <class S>
+struct Touching {
+  std::vector<const Stop<S>*> stops;
+  std::vector<const Contact<S>*> contacts;
+
+  std::size_t count() const { return stops.size() + contacts.size(); }
+};
+
+template <class S>
+Touching<S> listTouching(const ForceElements<S>& elements) {
+  Touching<S> touching;
+  for (const Stop<S>& stop : elements.template get<Stop>()) {
+    if (stop.damping) {
+      touching.stops.push_back(&stop);
+    }
+  }
+  for (const Contact<S>& contact : elements.template get<Contact>()) {
+    if (contact.damping) {
+      touching.contacts.push_back(&contact);
+    }
+  }
+  return touching;
+}
+
 template <class S>
 int countSwitches(const ForceElements<S>& elements) {
-  return static_cast<int>(listRigidStops(elements).size() + listSticking(elements).size());
+  return static_cast<int>(listRigidStops(elements).size() + listSticking(elements).size() +
+                          listTouching(elements).count());
 }
 
 /// A coordinate, or its difference to another.
@@ -127,7 +154,10 @@ ConstrainedMotion<S> solveHeld(LinearSystem<S> equations, std::vector<ClosureTer
   }
   std::vector<S> none;
   response.schur = factorize(std::move(schur), kSingularClosure, none);
-  return holdConditions(mass, response, std::move(excess), std::move(free));
+  std::vector<S> held_back(excess.end() - static_cast<std::ptrdiff_t>(held.size()), excess.end());
+  ConstrainedMotion<S> motion = holdConditions(mass, response, std::move(excess), std::move(free));
+  motion.held_back = std::move(held_back);
+  return motion;
 }
 
 }  // namespace twinmap::equations

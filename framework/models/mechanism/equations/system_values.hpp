@@ -25,9 +25,10 @@ struct BodyValues {
   int speed_count = 0;
 };
 
-enum class ClosureKind { kPlane, kRod, kGear, kPerpendicular };
+enum class ClosureKind { kPlane, kRod, kGear, kPerpendicular, kRolling };
 
-/// One condition c(q) = 0 of a constraint; those of coincident points are three planes.
+/// One condition c(q) = 0 of a constraint; those of coincident points are three planes. That of rolling in a
+/// direction is of the speeds alone: no condition of the coordinates stands behind it.
 template <class S>
 struct Closure {
   ClosureKind kind = ClosureKind::kGear;
@@ -35,8 +36,9 @@ struct Closure {
   bool swapped = false;     ///< `from` and `to` are the file's `to` and `from`
   Station<S> from{}, to{};  ///< kPlane: a point of the plane, and the point that stays in it
   Vec3<S> normal{};         ///< of the plane, a unit vector in the frame of from's body
-  Vec3<S> across{};         ///< kPerpendicular: a unit vector of to's body, at right angles to `normal`
-  S length = 1.0;           ///< of a rod
+  Vec3<S> across{};         ///< kPerpendicular: a unit vector of to's body, at right angles to `normal`;
+                            ///< kRolling: of from's body, the direction without slip
+  S length = 1.0;           ///< of a rod; kRolling: the radius
   int coordinate = -1, driver = -1;  ///< kGear: coordinate = ratio * driver + offset
   S ratio = 0.0, offset = 0.0;
 };

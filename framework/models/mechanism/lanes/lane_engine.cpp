@@ -29,12 +29,9 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
   }
 }
 
-/// None where outputs are of the past, which the implicit method does not keep, or where there are events
-/// that it does not look for.
+/// None where there are events, which the implicit method does not look for.
 std::vector<Index> LaneEngine::keepRetried(std::vector<Index> columns) const {
-  const LaneModel& model = programs_.getValues();
-  const bool can = model.sampling.output_delays.empty() && !model.hasEvents();
-  return can ? std::move(columns) : std::vector<Index>{};
+  return programs_.getValues().hasEvents() ? std::vector<Index>{} : std::move(columns);
 }
 
 StiffRetry& LaneEngine::updStiffRetry() {

@@ -81,7 +81,7 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
       recorder,
       {model.counts, recorded.derivatives, recorded.pivots, sampling.outputs, output_delays,
        sampling.output_delays, sampling.jumps, sampling.passed, recorded.events.guards,
-       recorded.events.transitions, recorded.events.input, recorded.projected},
+       recorded.events.transitions, recorded.events.input, recorded.projected, recorded.events.dips},
       directions);
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
   model.rest = program::compile(recorder, collectRest(recorded, parameters), model.counts);

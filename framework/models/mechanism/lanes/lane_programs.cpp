@@ -1,6 +1,7 @@
 #include "framework/models/mechanism/lanes/lane_programs.hpp"
 
 #include "framework/models/mechanism/compare_with_simbody.hpp"
+#include "framework/models/mechanism/lanes/motion_checks.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 
 namespace twinmap {
@@ -44,6 +45,7 @@ const StiffPrograms& LanePrograms::getStiff(const SystemNames& names) {
 
 /// Returns what prevents it, or "".
 std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) {
+  requireSteadyMotions(context);
   values_ = compileModel(recordModel(model_, context.names, makeLoopModel(context)), false);
   if (simbody == nullptr) {
     return "";
@@ -52,8 +54,8 @@ std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) 
     return compareWithSimbody(context, *simbody, *values_);
   }
   const ModelSpec known = removeSampled(model_);  // what Simbody knows
-  return compareWithSimbody(context, *simbody,
-                            compileModel(recordModel(known, context.names, values_->loops), false));
+  return compareWithSimbody(
+      context, *simbody, compileModel(recordModel(known, SystemNames(known.system), values_->loops), false));
 }
 
 }  // namespace twinmap

@@ -9,6 +9,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equilibrium.hpp"
+#include "framework/models/mechanism/lanes/delayed_outputs.hpp"
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "framework/models/mechanism/lanes/lane_start.hpp"
 #include "framework/models/mechanism/readings.hpp"
@@ -213,7 +214,7 @@ class LaneRunner::Impl : public lanes::SampleStream {
     const MatrixXd recorded = output_derivatives_.col(column).reshaped(getRecordedRows(), p);
     auto derivatives = derivatives_->middleCols(column * p, p);
     derivatives.topRows(rows) = recorded.topRows(rows);
-    subtractFrom(recorded, derivatives);
+    subtractBefore(model_.sampling.subtracted, task_.layout.times.size(), recorded, derivatives);
     for (Index row = 0; row < rows; ++row) {
       const Bounds* range = findRange(spec_, task_.layout, row);
       if (range != nullptr && isClipped(*range, (*responses_)(row, column))) {
@@ -230,19 +231,9 @@ class LaneRunner::Impl : public lanes::SampleStream {
     auto response = responses_->col(column);
     if (recorded_.size() > 0) {
       response.head(getOutputRows()) = recorded_.col(column).head(getOutputRows());
-      subtractFrom(recorded_.col(column), response);
+      subtractBefore(model_.sampling.subtracted, task_.layout.times.size(), recorded_.col(column), response);
     }
     clipReadings(spec_, task_.layout, response);
-  }
-
-  template <class Recorded, class Rows>
-  void subtractFrom(const Recorded& recorded, Rows&& rows) const {
-    const Index times = task_.layout.times.size();
-    for (std::size_t i = 0; i < model_.sampling.subtracted.size(); ++i) {
-      if (const int place = model_.sampling.subtracted[i]; place >= 0) {
-        rows.middleRows(static_cast<Index>(i) * times, times) -= recorded.middleRows(place * times, times);
-      }
-    }
   }
 
   const LaneModel& model_;

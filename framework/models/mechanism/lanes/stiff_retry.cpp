@@ -5,6 +5,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equilibrium.hpp"
+#include "framework/models/mechanism/lanes/delayed_outputs.hpp"
 #include "framework/models/mechanism/readings.hpp"
 #include "framework/simulation/stencil.hpp"
 
@@ -21,10 +22,13 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// and where they begin the states may jump.
 class RecordedProblem final : public HybridProblem {
  public:
-  RecordedProblem(const lanes::Sample& sample, Index times, const char* singular, SingleProgram& derivative,
-                  SingleProgram& output, SingleProgram& jacobian, SingleProgram* jump)
+  /// `recorded`: one column an output, one row a time.
+  RecordedProblem(const lanes::Sample& sample, const DelayedOutputs& outputs, Eigen::Ref<MatrixXd> recorded,
+                  const char* singular, SingleProgram& derivative, SingleProgram& output,
+                  SingleProgram& jacobian, SingleProgram* jump)
       : sample_(sample),
-        times_(times),
+        outputs_(outputs),
+        recorded_(recorded),
         singular_(singular),
         derivative_(derivative),
         output_(output),
@@ -79,9 +83,7 @@ class RecordedProblem final : public HybridProblem {
 
   void recordOutput(int index, double t, const State& x) override {
     output_.calcAt(t, x);
-    for (int i = 0; i < output_.getOutputCount(); ++i) {
-      sample_.outputs[i * times_ + index] = output_.getOutput(i);
-    }
+    outputs_.keep(index, output_, recorded_);
   }
 
   std::size_t getIndicatorCount() const override { return 0; }
@@ -93,7 +95,8 @@ class RecordedProblem final : public HybridProblem {
 
  private:
   const lanes::Sample& sample_;
-  Index times_;
+  const DelayedOutputs& outputs_;
+  Eigen::Ref<MatrixXd> recorded_;
   const char* singular_;
   SingleProgram &derivative_, &output_, &jacobian_;
   SingleProgram* jump_;  ///< null where nothing jumps
@@ -171,12 +174,18 @@ SampleStatus StiffRetry::run(const Eigen::Ref<const VectorXd>& parameters, Eigen
     }
     lanes::Sample sample;
     start_.fill(parameters, sample);
-    sample.outputs = response.data();
-    RecordedProblem problem(sample, task_.layout.times.size(), getSingularReason(model_), derivative_,
-                            output_, jacobian_, jump_ ? &*jump_ : nullptr);
+    const VectorXd& times = task_.layout.times;
+    const DelayedOutputs outputs(model_.problem, sample, times);
+    MatrixXd recorded(times.size(), model_.problem.output_count);
+    RecordedProblem problem(sample, outputs, recorded, getSingularReason(model_), derivative_, output_,
+                            jacobian_, jump_ ? &*jump_ : nullptr);
     HybridReport report =
-        integrateHybrid(problem, sample.initial, problem.getBoundaries(), task_.layout.times, options,
+        integrateHybrid(problem, sample.initial, problem.getBoundaries(), outputs.getTimes(), options,
                         sequence.empty() ? nullptr : &sequence, HybridMethod::kImplicit);
+    const VectorXd rows = recorded.reshaped();
+    response.head(times.size() * task_.layout.getOutputCount()) =
+        rows.head(times.size() * task_.layout.getOutputCount());
+    subtractBefore(model_.sampling.subtracted, times.size(), rows, response);
     clipReadings(spec_, task_.layout, response);
     status.reason =
         report.failure.empty() && !response.allFinite() ? "an output became non-finite" : report.failure;

@@ -30,12 +30,13 @@ VectorXd Assembly::close(const VectorXd& parameters, const VectorXd& coordinates
 VectorXd Assembly::calcRates(const VectorXd& parameters, const VectorXd& closed, VectorXd rates) {
   const LoopPlan& plan = model_.plan;
   const ClosureValues given = program_.calc(parameters, closed, rates);
-  const MatrixXd slopes = given.slopes(plan.rows, plan.dependent_rates);
+  const MatrixXd slopes = given.rate_columns(plan.rows, plan.dependent_rates);
   rates(plan.dependent_rates) -= linalg::solveMinimumNorm(slopes, given.rates(plan.rows));
   return rates;
 }
 
-/// With c(q, p) = 0 and d(q, v, p) = dc/dq v = 0 along the solution, what is not held changes as it must.
+/// With c(q, p) = 0 and d(q, v, p) = 0, which is dc/dq v but for rolling, along the solution, what is not
+/// held changes as it must.
 void Assembly::moveDerivatives(const ClosureValues& at, MatrixXd& states) const {
   const Index n = model_.coordinates, p = states.cols() - 1;
   const LoopPlan& plan = model_.plan;
@@ -44,8 +45,8 @@ void Assembly::moveDerivatives(const ClosureValues& at, MatrixXd& states) const 
   const MatrixXd of_coordinates = at.slopes(plan.rows, plan.dependent);
   coordinates(plan.dependent, Eigen::all) -=
       linalg::fitLinear(of_coordinates, open(plan.rows, Eigen::all)).coefficients;
-  const MatrixXd moving = at.forced_rates + at.rate_slopes * coordinates + at.slopes * rates;
-  const MatrixXd of_rates = at.slopes(plan.rows, plan.dependent_rates);
+  const MatrixXd moving = at.forced_rates + at.rate_slopes * coordinates + at.rate_columns * rates;
+  const MatrixXd of_rates = at.rate_columns(plan.rows, plan.dependent_rates);
   rates(plan.dependent_rates, Eigen::all) -=
       linalg::fitLinear(of_rates, moving(plan.rows, Eigen::all)).coefficients;
   states.topRightCorner(n, p) = coordinates;

@@ -8,7 +8,7 @@
 #include "framework/experiment/model/named_forces.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/closures.hpp"
+#include "framework/models/mechanism/equations/constrained_motion.hpp"
 #include "framework/models/mechanism/lanes/recording/recorded_parameters.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -45,15 +45,22 @@ program::Program compileClosures(const ModelSpec& model, const SystemNames& name
     parameters.push_back(recorder.parameter(i));
   }
   const auto motions = equations::calcMotions(system, q, ClosureSymbols(n, Symbol(0.0)));
-  for (const auto& terms : equations::calcClosureTerms(system, motions, q)) {
+  const auto conditions = equations::calcClosureTerms(system, motions, q);
+  for (const auto& terms : conditions) {
     distances.push_back(terms.value);
   }
-  const ClosureSymbols rates = program::calcTangents(distances, moving);
+  ClosureSymbols rates = program::calcTangents(distances, moving);
   const ClosureSymbols speeds = equations::calcSpeeds(system, q, v);
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    if (system.closures[k].kind == equations::ClosureKind::kRolling) {
+      rates[k] = equations::dotRow(conditions[k].row, speeds);
+    }
+  }
   ClosureSymbols all = distances;
   appendColumns(distances, q, all);
   all.insert(all.end(), rates.begin(), rates.end());
   appendColumns(rates, q, all);
+  appendColumns(rates, v, all);
   all.insert(all.end(), speeds.begin(), speeds.end());
   appendColumns(speeds, q, all);
   appendColumns(speeds, v, all);
@@ -75,6 +82,7 @@ std::vector<ClosureLabel> makeLabels(const ModelSpec& model, const SystemNames& 
     labels.insert(labels.end(), places, {text, unit, spec.where});
     const std::size_t directions = spec.weld ? 3 : spec.pin ? 2 : 0;
     labels.insert(labels.end(), directions, {text, "rad", spec.where});
+    labels.insert(labels.end(), spec.rolling ? 2 : 0, {text, "m/s", spec.where, true});
   }
   return labels;
 }
@@ -126,6 +134,12 @@ ClosureValues ClosureProgram::calc(const VectorXd& parameters, const VectorXd& c
   values.slopes = reader.take(m, n);
   values.rates = reader.take(m);
   values.rate_slopes = reader.take(m, n);
+  values.rate_columns = reader.take(m, n);
+  for (Index k = 0; k < m; ++k) {
+    if (!model_.labels[k].of_speeds) {
+      values.rate_columns.row(k) = values.slopes.row(k);  // the same but for rounding
+    }
+  }
   values.speeds = reader.take(n);
   values.speed_slopes = reader.take(n, n);
   values.speed_columns = reader.take(n, n);

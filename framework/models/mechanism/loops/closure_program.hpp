@@ -12,9 +12,10 @@ namespace twinmap {
 /// The conditions c(q, p) = 0 of all constraints of a model at coordinates q and their rates v, in the file's
 /// order, with exact derivatives; and the speeds behind the rates.
 struct ClosureValues {
-  Eigen::VectorXd distances;                    ///< c; m, or the unit of a gear's coordinate
+  Eigen::VectorXd distances;                    ///< c; m, or the unit of a gear's coordinate; 0 of rolling
   Eigen::MatrixXd slopes;                       ///< dc/dq
-  Eigen::VectorXd rates;                        ///< dc/dq v
+  Eigen::VectorXd rates;                        ///< dc/dq v; of rolling the slip
+  Eigen::MatrixXd rate_columns;                 ///< of `rates` with respect to v: `slopes` but for rolling
   Eigen::MatrixXd rate_slopes;                  ///< of `rates` with respect to q
   Eigen::VectorXd speeds;                       ///< as Simbody has them: equations::calcSpeeds
   Eigen::MatrixXd speed_slopes, speed_columns;  ///< of `speeds` with respect to q and v

@@ -74,21 +74,24 @@ class LoopPlanner {
     const std::vector<int> released = listReleased({&initial.coordinates});
     requireFree(guess);
     const VectorXd closed = assemble(guess, released);
-    const MatrixXd slopes = calcFreeSlopes(closed);
+    const MatrixXd columns = calcFreeColumns(closed);
     LoopPlan plan;
-    plan.rows = pickIndependent(slopes.transpose(), rows_, true);
+    plan.rows = pickIndependent(columns.transpose(), rows_, true);
     requireRegular(closed, plan.rows);
-    const MatrixXd kept = slopes(plan.rows, Eigen::all);
-    plan.dependent = pickIndependent(kept, released, false);
-    plan.dependent_rates =
-        pickIndependent(kept, listReleased({&initial.speeds, &initial.coordinates}), false);
+    plan.dependent = pickIndependent(calcFreeSlopes(closed)(plan.rows, Eigen::all), released, false);
+    plan.dependent_rates = pickIndependent(columns(plan.rows, Eigen::all),
+                                           listReleased({&initial.speeds, &initial.coordinates}), false);
     return plan;
   }
 
  private:
   /// Derivatives of the conditions with respect to what is not prescribed; 0 for what is.
-  MatrixXd calcFreeSlopes(const VectorXd& at) {
-    MatrixXd slopes = program_.calc(parameters_, at).slopes;
+  MatrixXd calcFreeSlopes(const VectorXd& at) { return keepFree(program_.calc(parameters_, at).slopes); }
+  /// Those of their rates with respect to the rates of the coordinates.
+  MatrixXd calcFreeColumns(const VectorXd& at) {
+    return keepFree(program_.calc(parameters_, at).rate_columns);
+  }
+  MatrixXd keepFree(MatrixXd slopes) const {
     for (Index i = 0; i < slopes.cols(); ++i) {
       if (std::find(coordinates_.begin(), coordinates_.end(), i) == coordinates_.end()) {
         slopes.col(i).setZero();
@@ -103,7 +106,7 @@ class LoopPlanner {
       return pickIndependent(slopes.transpose(), rows_, true).size();
     };
     if (prescribed_ != nullptr &&
-        count(program_.calc(parameters_, guess).slopes) > count(calcFreeSlopes(guess))) {
+        count(program_.calc(parameters_, guess).rate_columns) > count(calcFreeColumns(guess))) {
       throw SimulationFailure("the constraints leave no coordinate free to follow '" +
                                   prescribed_->coordinate.text + "', whose motion is prescribed",
                               prescribed_->coordinate.where);
@@ -162,7 +165,7 @@ class LoopPlanner {
     if (rows.size() == rows_.size()) {
       return;
     }
-    const MatrixXd slopes = calcFreeSlopes(closed);
+    const MatrixXd slopes = calcFreeColumns(closed);
     VectorXd some = VectorXd::Zero(closed.size());
     for (const int i : coordinates_) {
       some[i] = std::cos(1.0 + i);
@@ -176,7 +179,7 @@ class LoopPlanner {
     const ClosureValues at = program_.calc(parameters_, moved);
     const std::string open = describeOpenLoops(model_, at);
     if (!open.empty() ||
-        pickIndependent(calcFreeSlopes(moved).transpose(), rows_, true).size() > rows.size()) {
+        pickIndependent(calcFreeColumns(moved).transpose(), rows_, true).size() > rows.size()) {
       throw SimulationFailure(
           "the machine starts in a singular configuration, in which a loop could go on in several ways "
           "(links "

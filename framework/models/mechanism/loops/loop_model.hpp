@@ -22,6 +22,7 @@ struct ClosureLabel {
   std::string text;  ///< "constraint 'loop'", "system.constraints[2] (rod)"
   std::string unit;
   SourceLocation where;
+  bool of_speeds = false;  ///< rolling: no condition of the coordinates stands behind it
 };
 
 /// The conditions c(q, p) = 0 of a model's constraints, recorded, and how they are met. Immutable; shared by

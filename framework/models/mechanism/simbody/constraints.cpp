@@ -55,6 +55,10 @@ std::vector<SimTK::ConstraintIndex> addBetweenBodies(MobilizedBody& from, Mobili
     return addPin(from, toTransform(one.from_frame), to, toTransform(one.to_frame));
   }
   const SimTK::UnitVec3 normal(toVec3(one.normal));
+  if (spec.rolling) {
+    const SimTK::Transform plane(SimTK::Rotation(normal, SimTK::ZAxis), from_point);
+    return {Constraint::SphereOnPlaneContact(from, plane, to, to_point, one.length, true)};
+  }
   return {Constraint::PointInPlane(from, normal, SimTK::dot(normal, from_point), to, to_point)};
 }
 

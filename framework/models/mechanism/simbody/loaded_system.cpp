@@ -59,7 +59,7 @@ LoadedSystem::LoadedSystem(SimbodyContext& context, bool for_simbody)
       rates_(coordinates_.size()),
       states_(context.names.getStateNames().size()),
       signals_(context.excitation.getSignalCount(), 0.0),
-      signal_rates_(context.expressions.hasSignalRates() ? signals_.size() : 0) {
+      signal_rates_(context.expressions.getSignalRateCount()) {
   context.expressions.setNumbers(context.numbers.getValues());
   context.excitation.update(context.numbers);
   if (for_simbody || countStates() > 0 || !context.model.system.constraints.empty() ||

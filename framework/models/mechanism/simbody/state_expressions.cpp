@@ -69,8 +69,7 @@ void StateExpressions::defineNames(const ModelSpec& model, const NamedValues<dou
     defineName(values_, signal.name);
   }
   time_ = values_.define("t");
-  for (const SignalSpec& signal : usesSignalRates(model) ? model.excitation : std::vector<SignalSpec>{}) {
-    const std::string rate = nameRate(signal);
+  for (const std::string& rate : nameSignalRates(model.excitation, countSignalRates(model))) {
     signal_rates_.push_back(values_.contains(rate) ? kTaken : values_.define(rate));
   }
 }

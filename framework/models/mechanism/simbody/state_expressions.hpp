@@ -20,11 +20,13 @@ class StateExpressions {
   /// Takes over the values of constants and parameters.
   void setNumbers(const NamedValues<double>& values);
 
-  /// In the order of the file; `rates`: time derivatives of the coordinates.
+  /// In the order of the file; `rates`: time derivatives of the coordinates; `signal_rates`: as
+  /// Excitation::calcRates() gives them.
   void setState(double t, const std::vector<double>& coordinates, const std::vector<double>& rates,
                 const std::vector<double>& states, const std::vector<double>& signals,
                 const std::vector<double>& signal_rates);
-  bool hasSignalRates() const { return !signal_rates_.empty(); }
+  /// 0 where no expression uses them.
+  std::size_t getSignalRateCount() const { return signal_rates_.size(); }
   /// Of the coordinates, for expressions of outputs.
   void setAccelerations(const std::vector<double>& accelerations);
 

@@ -5,7 +5,7 @@
 
 #include "framework/experiment/check/check_pairs.hpp"
 #include "tests/framework/models/mechanism/events_golden.hpp"
-#include "tests/framework/models/mechanism/run_model.hpp"
+#include "tests/framework/models/mechanism/exact_events.hpp"
 
 namespace twinmap::testing {
 namespace {
@@ -45,45 +45,14 @@ SignalSpec sineSignal(const std::string& text, const std::string& amplitude, con
   return spec;
 }
 
-struct Solution {
-  MatrixXd response, derivatives;  ///< rows: outputs, each at all times
-};
-
-Solution solveWithDerivatives(const ModelSpec& model, const VectorXd& times, const VectorXd& point) {
-  MultibodySimulator simulator(model, times);
-  Solution solution{MatrixXd(simulator.getLayout().getRowCount(), 1), {}};
-  SampleStatus status;
-  simulator.simulateWithDerivatives(point, solution.response, solution.derivatives, &status);
-  EXPECT_TRUE(status.ok) << status.reason;
-  return solution;
-}
-
-/// Against central differences through the same events, 1e-5 of the largest of each output. The steps are so
-/// small that no event passes a time of output.
-void expectExactEvents(ModelSpec model, const VectorXd& point, double duration, double share = 2e-5) {
-  model.simulation.relative_tolerance = 1e-12;
-  model.simulation.absolute_tolerance = 1e-15;
-  const VectorXd times = VectorXd::LinSpaced(14, 0.13 * duration, 0.97 * duration);
-  const Solution exact = solveWithDerivatives(model, times, point);
-  MultibodySimulator simulator(model, times);
-  for (Index k = 0; k < point.size(); ++k) {
-    const double step = share * (model.parameters[k].bounds.upper - model.parameters[k].bounds.lower);
-    MatrixXd points = point.replicate(1, 2), responses(exact.response.rows(), 2);
-    points(k, 0) -= step;
-    points(k, 1) += step;
-    SampleStatus statuses[2];
-    simulator.simulate(points, responses, statuses);
-    const VectorXd differences = (responses.col(1) - responses.col(0)) / (2.0 * step);
-    for (std::size_t o = 0; o < model.outputs.size(); ++o) {
-      const auto rows = Eigen::seqN(static_cast<Index>(o) * times.size(), times.size());
-      EXPECT_LT((exact.derivatives.col(k)(rows) - differences(rows)).cwiseAbs().maxCoeff(),
-                1e-5 * differences(rows).cwiseAbs().maxCoeff())
-          << model.parameters[k].name.text << " of " << model.outputs[o].name.text;
-    }
-  }
-}
-
 // ---------------------------------------------------------------------------------------------- impacts
+
+OutputSpec forceOf(const std::string& text) {
+  OutputSpec spec;
+  spec.name = name("force of " + text);
+  spec.force_of = name(text);
+  return spec;
+}
 
 struct Flight {
   double height, speed;
@@ -203,6 +172,56 @@ TEST(Impacts, HaveExactDerivativesThroughTheMassMatrix) {
   model.system.elements.get<Stop>()[0].above = ex("wall");
   model.system.bodies[1].mass = ex("m");
   expectExactEvents(model, Eigen::Vector3d(0.6, 0.1, 0.7), 2.0);
+}
+
+/// A ball thrown up to a height of h under a ceiling a little lower, in one step if nothing stopped it.
+TEST(Impacts, OfAFlightThatJustReachesACeilingAreSeen) {
+  for (const double share : {0.3, 0.1, 0.01, 1e-4, 1e-8, 0.0, -1e-8, -0.1}) {
+    ModelSpec model = makeModel(3.0);
+    addSliding(model, "y", "0.3", kAlongY);
+    model.system.gravity = ex3("0", "-10", "0");
+    Stop<Expression> ceiling;
+    ceiling.coordinate = name("y");
+    const double speed = 1.0, apex = 0.05, height = apex * (1.0 - share);
+    ceiling.above = ex(std::to_string(height));
+    ceiling.restitution = ex("0.5");
+    model.system.elements.get<Stop>() = {ceiling};
+    start(model, "y", "0", std::to_string(speed));
+    model.outputs = {coordinateOutput("y")};
+    const double limit = std::stod(ceiling.above->text), g = 10.0;
+    const double left = speed * speed - 2.0 * g * limit,
+                 meets = left < 0.0 ? 3.0 : (speed - std::sqrt(left)) / g;
+    const double back = -0.5 * std::sqrt(std::max(left, 0.0)), t = 0.5 - meets;
+    const double expected = left < 0.0 ? speed * 0.5 - 0.5 * g * 0.25 : limit + back * t - 0.5 * g * t * t;
+    EXPECT_NEAR(runModel(model, VectorXd::Constant(1, 0.5))(0, 0), expected, 1e-7) << share;
+  }
+}
+
+/// An elastic ball between a floor and a ceiling: its energy decides whether it reaches the ceiling, each
+/// time.
+TEST(Impacts, BetweenFloorAndCeilingAreSeenInEveryFlight) {
+  const double g = 10.0, v = 1.0;  // at height 1/2: up to .55
+  for (const double ceiling : {0.501, 0.52, 0.54, 0.549}) {
+    ModelSpec model = makeModel(5.0);
+    addSliding(model, "y", "0.3", kAlongY);
+    model.system.gravity = ex3("0", "-10", "0");
+    Stop<Expression> top;
+    top.coordinate = name("y");
+    top.above = ex(std::to_string(ceiling));
+    top.restitution = ex("1");
+    model.system.elements.get<Stop>() = {rigidStop("y", "0", "1"), top};
+    start(model, "y", "0.5", "1");
+    model.outputs = {coordinateOutput("y")};
+    const double low = std::sqrt(v * v + 2.0 * g * 0.5), high = std::sqrt(low * low - 2.0 * g * ceiling);
+    const double flight = (low - high) / g, begin = -(low - v) / g;  // the floor before the start
+    const VectorXd times = VectorXd::LinSpaced(40, 0.1, 5.0);
+    const MatrixXd result = runModel(model, times);
+    for (int i = 0; i < times.size(); ++i) {
+      const double phase = std::fmod(times[i] - begin, 2.0 * flight);
+      const double t = std::min(phase, 2.0 * flight - phase);
+      EXPECT_NEAR(result(i, 0), low * t - 0.5 * g * t * t, 1e-6) << ceiling << " at " << times[i];
+    }
+  }
 }
 
 TEST(Rest, EndsWhereTheForcePullsAway) {
@@ -360,6 +379,122 @@ TEST(DryFriction, HasExactDerivativesThroughStickAndSlip) {
   model.system.elements.get<Friction>()[0].coulomb = ex("Fc");
   model.system.bodies[1].mass = ex("m");
   expectExactEvents(model, Eigen::Vector2d(4.0, 1.0), 2.0);
+}
+
+/// make_events_golden.py: table. The table carries the block as its joint's parent.
+ModelSpec makeOnTable() {
+  ModelSpec model = makeModel(2.0);
+  addSliding(model, "table", "7");
+  addSliding(model, "x", "2");
+  model.system.bodies[1].joint.parent = name("on table");
+  Friction<Expression> friction = dryFriction("x", "6.5");
+  friction.name = name("friction");
+  model.system.elements.get<Friction>() = {friction};
+  model.excitation = {sineSignal("z", "0.1", "1")};
+  model.system.motions = {{name("table"), name("z")}};
+  start(model, "x", "0", "0");
+  model.outputs = {coordinateOutput("x"), speedOutput("x"), forceOf("friction")};
+  return model;
+}
+
+TEST(DryFriction, OnATableThatASignalMovesIsScipys) {
+  expectOutputs(makeOnTable(), golden::kEventTimes, golden::kOnTable);
+}
+
+TEST(DryFriction, OnATableThatASignalMovesHasExactDerivatives) {
+  ModelSpec model = makeOnTable();
+  model.parameters = {parameter("Fc", 5, 7), parameter("A", 0.08, 0.12)};
+  model.system.elements.get<Friction>()[0].coulomb = ex("Fc");
+  model.excitation = {sineSignal("z", "A", "1")};
+  expectExactEvents(model, Eigen::Vector2d(6.5, 0.1), 2.0);
+}
+
+TEST(DryFriction, BreaksLooseUnderAForceThatSwingsWhileNothingMoves) {
+  ModelSpec model = makeModel(4.0);
+  addSliding(model, "x", "2");
+  model.system.elements.get<Friction>() = {dryFriction("x", "3")};
+  model.system.elements.get<ForceLaw>() = {law("x", "3.2 * sin(2 * pi * 2 * t)")};
+  model.outputs = {coordinateOutput("x")};
+  const MatrixXd result = runModel(model, VectorXd::Constant(1, 0.3));
+  // 2 x'' = 3.2 sin(w t) - 3 from asin(3 / 3.2) / w on, until the next swing
+  const double w = 4.0 * M_PI, begin = std::asin(3.0 / 3.2) / w;
+  const auto calcSpeed = [&](double t) {
+    return (3.2 / w * (std::cos(w * begin) - std::cos(w * t)) - 3.0 * (t - begin)) / 2.0;
+  };
+  double low = 0.125, high = 0.25;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (calcSpeed(middle) > 0.0 ? low : high) = middle;
+  }
+  const double end = low, span = end - begin;
+  const double path =
+      (3.2 / w * (std::cos(w * begin) * span - (std::sin(w * end) - std::sin(w * begin)) / w) -
+       1.5 * span * span) /
+      2.0;
+  EXPECT_GT(path, 1e-4);
+  EXPECT_NEAR(result(0, 0), path, 1e-7);
+}
+
+TEST(DryFriction, SlidesBackAndOnAgainUnderAForceThatGrows) {
+  // m v' = 6 t - 3 - friction of 1 from v = 1/2: v falls as a parabola to -1/6 and returns, but for friction
+  ModelSpec model = makeModel(1.5);
+  addSliding(model, "x", "1");
+  model.system.elements.get<Friction>() = {dryFriction("x", "1")};
+  model.system.elements.get<ForceLaw>() = {law("x", "6 * t - 3")};
+  start(model, "x", "0", "0.5");
+  model.outputs = {speedOutput("x")};
+  // on: v = 1/2 - 4 t + 3 t^2 to 0; back while 3 - 6 t > 1: v' = 6 t - 2 from there; then it sticks or turns
+  const double halts = (4.0 - std::sqrt(10.0)) / 6.0;
+  const auto calcBack = [&](double t) { return 3.0 * (t * t - halts * halts) - 2.0 * (t - halts); };
+  VectorXd times(4);
+  times << 0.1, 0.3, 0.6, 1.5;
+  const double turns = 2.0 / 3.0 - halts;  // v is 0 again, at less than 1/3 + (1/3 - halts)
+  const double loose = std::max(turns, 2.0 / 3.0);
+  const MatrixXd result = runModel(model, times);
+  EXPECT_NEAR(result(0, 0), 0.5 - 0.4 + 0.03, 1e-9);
+  EXPECT_NEAR(result(1, 0), calcBack(0.3), 1e-9);
+  EXPECT_NEAR(result(2, 0), turns > 0.6 ? calcBack(0.6) : 0.0, 1e-9);
+  EXPECT_NEAR(result(3, 0), 3.0 * (1.5 * 1.5 - loose * loose) - 4.0 * (1.5 - loose), 1e-9);
+}
+
+TEST(DryFriction, ShowsWhatItHoldsWithWhileItSticks) {
+  // a ramp of 2 N/s against 3 N; beside it an elastic stop whose place in the list a rigid one takes
+  // elsewhere
+  ModelSpec model = makeModel(2.5);
+  addSliding(model, "x", "2");
+  Friction<Expression> friction = dryFriction("x", "3");
+  friction.name = name("friction");
+  model.system.elements.get<Friction>() = {friction};
+  model.system.elements.get<ForceLaw>() = {law("x", "2 * t")};
+  Stop<Expression> elastic;
+  elastic.coordinate = name("x");
+  elastic.below = ex("0.1");
+  elastic.stiffness = ex("10");
+  elastic.name = name("elastic");
+  Stop<Expression> rigid = rigidStop("x", "-1", "0.5");
+  rigid.name = name("rigid");
+  model.system.elements.get<Stop>() = {rigid, elastic};
+  model.outputs = {forceOf("friction"), forceOf("elastic"), forceOf("rigid"), coordinateOutput("x")};
+  VectorXd times(4);
+  times << 0.25, 0.8, 1.9, 2.5;
+  const MatrixXd result = runModel(model, times);
+  for (int i = 0; i < 4; ++i) {
+    const bool sticks = times[i] < 1.0;  // until 2 t + 1 = 3
+    EXPECT_NEAR(result(i, 0), sticks ? -(2.0 * times[i] + 1.0) : -3.0, 1e-9);
+    EXPECT_NEAR(result(i, 1), 10.0 * std::max(0.1 - result(i, 3), 0.0), 1e-9);
+    EXPECT_EQ(result(i, 2), 0.0);
+  }
+}
+
+TEST(Rest, ShowsTheForceOfItsStop) {
+  ModelSpec model = makeModel(1.0);
+  addSliding(model, "y", "0.3", kAlongY);
+  model.system.gravity = ex3("0", "-9.81", "0");
+  model.system.elements.get<Stop>() = {rigidStop("y", "0", "0.5")};
+  model.system.elements.get<Stop>()[0].name = name("floor");
+  start(model, "y", "0");
+  model.outputs = {forceOf("floor")};
+  EXPECT_NEAR(runModel(model, VectorXd::Constant(1, 0.5))(0, 0), 0.3 * 9.81, 1e-12);
 }
 
 /// The piston passes dead centres, where no force at it holds the loop.

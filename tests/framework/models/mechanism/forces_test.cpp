@@ -1,6 +1,7 @@
 // Force elements, force laws and station outputs against closed forms and conserved quantities.
 
 #include <cmath>
+#include <complex>
 
 #include "tests/framework/models/mechanism/run_model.hpp"
 
@@ -48,6 +49,30 @@ TEST(ForceLaws, KnowTheTimeAndTheSignals) {
   const Eigen::MatrixXd result = runModel(model, Eigen::VectorXd::Constant(1, 2.0));
   EXPECT_NEAR(result(0, 0), 0.5 * 8.0 + 3.0 * (0.125 + 0.5 * 1.0), 1e-9);  // t^3 / 2 + the pulse
   EXPECT_NEAR(result(0, 1), 1.5 * 4.0 + 3.0 * 0.5, 1e-9);
+}
+
+TEST(ForceLaws, OfASpringAndADamperOnAMovingBaseAreTheirClosedForm) {
+  // m x'' = k (z - x) + d (z' - x') with z = A sin(w t), from rest
+  const double m = 2.0, k = 200.0, d = 1.5, A = 0.02, w = 9.0;
+  ModelSpec model = makeBlock("2", 3.0);
+  SignalSpec base;
+  base.name = name("z");
+  base.sines.push_back({ex("0.02"), ex("9 / (2 * pi)"), ex("0"), ex("0"), {"", {}}});
+  model.excitation = {base};
+  model.system.elements.get<ForceLaw>() = {law("x", "200 * (z - x) + 1.5 * (z_dot - x_dot)")};
+  const std::complex<double> i(0.0, 1.0);
+  const std::complex<double> forced = A * (k + i * w * d) / (k - m * w * w + i * w * d);
+  const double a = 0.5 * d / m, wd = std::sqrt(k / m - a * a);
+  // x = Im(forced e^(i w t)) + e^(-a t) (b cos(wd t) + c sin(wd t))
+  const double b = -forced.imag(), c = (-w * forced.real() + a * b) / wd;
+  const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(9, 0.3, 3.0);
+  const Eigen::MatrixXd result = runModel(model, times);
+  for (Eigen::Index row = 0; row < times.size(); ++row) {
+    const double t = times[row];
+    const double expected = (forced * std::exp(i * w * t)).imag() +
+                            std::exp(-a * t) * (b * std::cos(wd * t) + c * std::sin(wd * t));
+    EXPECT_NEAR(result(row, 0), expected, 1e-9);
+  }
 }
 
 TEST(Forces, AppliedForceMayTurnWithItsBody) {

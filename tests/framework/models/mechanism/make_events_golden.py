@@ -111,6 +111,32 @@ def carried():
     return solve(modes, "stuck", [0.0, 0.0, 0.0, 0.0], lambda t, x: [x[0], x[2], x[3]])
 
 
+def table():
+    """A block on a table that moves as 0.1 sin(2 pi t), relative to it: it slides where 6.5 N do not hold it."""
+    m, level = 2.0, 6.5
+
+    def pull(t):
+        return m * 0.1 * (2.0 * numpy.pi) ** 2 * numpy.sin(2.0 * numpy.pi * t)
+
+    def sliding(side):
+        def meet(t, x):
+            x[1] = 0.0
+            return ("stuck", x) if abs(pull(t)) <= level else ("ahead" if pull(t) > 0.0 else "behind", x)
+
+        return (lambda t, x: [x[1], (pull(t) - side * level) / m]), [(lambda t, x: side * x[1], meet)]
+
+    def slip(t, x):
+        return ("ahead" if pull(t) > 0.0 else "behind"), x
+
+    def show(t, x):  # the force of friction on the block
+        held = -pull(t) if abs(pull(t)) <= level else -numpy.sign(pull(t)) * level
+        return [x[0], x[1], held if abs(x[1]) < 1e-9 else -numpy.sign(x[1]) * level]
+
+    stuck = (lambda t, x: [0.0, 0.0], [(lambda t, x: level - abs(pull(t)), slip)])
+    modes = {"ahead": sliding(1.0), "behind": sliding(-1.0), "stuck": stuck}
+    return solve(modes, "stuck", [0.0, 0.0], show)
+
+
 def write(name, values):
     rows = ",\n    ".join("{" + ", ".join(f"{value:.15g}" for value in row) + "}" for row in values)
     return f"constexpr double k{name}[{len(values)}][{len(TIMES)}] = {{\n    {rows}}};"
@@ -124,7 +150,7 @@ def main():
         "namespace twinmap::testing::golden {\n",
         f"constexpr double kEventTimes[{len(TIMES)}] = {{{times}}};\n",
     ]
-    for name, machine in (("CartAtWall", cart), ("DryBelt", belt), ("Carried", carried)):
+    for name, machine in (("CartAtWall", cart), ("DryBelt", belt), ("Carried", carried), ("OnTable", table)):
         summary = machine.__doc__.splitlines()[0]
         parts.append(f"/// {summary}\n{write(name, machine())}\n")
     parts.append("}  // namespace twinmap::testing::golden")

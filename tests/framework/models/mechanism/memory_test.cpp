@@ -227,6 +227,47 @@ TEST(Memory, OfAStiffBristleIsIntegratedImplicitly) {
   EXPECT_LT((response - expected).cwiseAbs().maxCoeff(), 1e-6);
 }
 
+TEST(Memory, OfAStiffBristleIsIntegratedImplicitlyBehindSensorsToo) {
+  // as above, seen late, averaged, and both, from the settled start on
+  ModelSpec model = makeModel(1.0);
+  model.simulation.relative_tolerance = 1e-7;
+  model.simulation.absolute_tolerance = 1e-10;
+  model.parameters = {parameter("late", 0.02, 0.2)};
+  addSlider(model, "q", "2");
+  model.system.elements.get<Friction>().push_back(lugre("q", "2", "1e9", "0"));
+  model.system.elements.get<ForceLaw>().push_back(law("q", "5"));
+  start(model, "q", "0", "1");
+  const auto show = [&](const std::string& delay, const std::string& average) {
+    OutputSpec output = expressionOutput("q");
+    output.sensor.emplace();
+    output.sensor->delay = {delay, {}};
+    output.sensor->average = {average, {}};
+    model.outputs.push_back(output);
+  };
+  show("late", "");
+  show("", "0.15");
+  show("late", "0.15");
+  const VectorXd times = VectorXd::LinSpaced(8, 0.05, 1.0);
+  MultibodySimulator simulator(model, times);
+  MatrixXd response(24, 1), derivatives;
+  SampleStatus status;
+  simulator.simulateWithDerivatives(VectorXd::Constant(1, 0.1), response, derivatives, &status);
+  ASSERT_TRUE(status.ok && status.stiff_retry) << status.reason;
+  const auto path = [](double t) { return t > 0.0 ? t + 0.75 * t * t : 0.0; };
+  const auto average = [](double t) {
+    const auto integral = [](double u) { return u > 0.0 ? 0.5 * u * u + 0.25 * u * u * u : 0.0; };
+    return (integral(t) - integral(t - 0.15)) / 0.15;
+  };
+  for (int i = 0; i < 8; ++i) {
+    const double t = times[i];
+    EXPECT_NEAR(response(i), path(t - 0.1), 1e-6) << t;
+    EXPECT_NEAR(response(8 + i), average(t), 2e-6) << t;
+    EXPECT_NEAR(response(16 + i), average(t - 0.1), 2e-6) << t;
+    const double speed = t > 0.1 ? 1.0 + 1.5 * (t - 0.1) : 0.0;
+    EXPECT_NEAR(derivatives(i, 0), -speed, 1e-4) << t;
+  }
+}
+
 TEST(Memory, OfRegularisedFrictionIsNone) {
   // at rest under a load below the Coulomb level it creeps where tanh(v / onset) carries the load
   ModelSpec model = makeModel(3.0);
@@ -330,7 +371,10 @@ TEST(Outputs, OfSignalsRatesAreTheirTimeDerivatives) {
                    expressionOutput("sweep_dot"),
                    expressionOutput("tones_dot"),
                    expressionOutput("table_dot"),
-                   speedOutput("q")};
+                   speedOutput("q"),
+                   expressionOutput("sweep_ddot"),
+                   expressionOutput("tones_ddot"),
+                   expressionOutput("table_ddot")};
   const double h = 1e-4;
   VectorXd times(9);
   times << 0.05, 0.05 + h, 0.05 + 2 * h, 0.4, 0.4 + h, 0.4 + 2 * h, 0.8, 0.8 + h, 0.8 + 2 * h;
@@ -339,6 +383,9 @@ TEST(Outputs, OfSignalsRatesAreTheirTimeDerivatives) {
   for (int i = 0; i < 9; i += 3) {
     const VectorXd slopes = (response.row(i + 2) - response.row(i)).head(3) / (2.0 * h);
     EXPECT_LT((response.row(i + 1).segment(3, 3).transpose() - slopes).cwiseAbs().maxCoeff(), 1e-3);
+    const VectorXd bends = (response.row(i + 2) - response.row(i)).segment(3, 3) / (2.0 * h);
+    EXPECT_LT((response.row(i + 1).tail(3).transpose() - bends).cwiseAbs().maxCoeff(),
+              1e-5 * bends.cwiseAbs().maxCoeff());
     EXPECT_NEAR(response(i, 6), response(i, 1) - 0.5 * std::sin(-EIGEN_PI), 1e-9);
   }
 }

@@ -296,6 +296,77 @@ TEST(Controller, ShowsItsInitialValueBeforeItsFirstWrite) {
   EXPECT_NEAR(held(7, 0), 2.4, 1e-12);
 }
 
+/// Continuous or sampled laws that the voltage limits most of the time: a kink each time that a limit is met
+/// or left, or an instant of the controller.
+TEST(Controller, ThatSaturatesHasExactDerivatives) {
+  ModelSpec model = makeSampledMotor(0.02, "0.005", {});
+  model.parameters = {parameter("kp", 30, 50), parameter("b", 1e-3, 3e-3), parameter("top", 1.0, 1.6)};
+  model.system.elements.get<ForceLaw>() = {law("angle", "0.05 * i - b * angle_dot")};
+  model.system.controllers[0].writes[0].value =
+      ex("clamp(kp * (r - q) + 30 * integral - 0.4 * difference(q), -top, top)");
+  EXPECT_LT(compareDerivatives(model), 1e-5);
+  model.system.controllers.clear();
+  model.system.expressions = {{name("u"), ex("min(max(kp * (r - angle) - 0.4 * angle_dot, -top), top)")}};
+  EXPECT_LT(compareDerivatives(model), 1e-5);
+}
+
+/// A lift of 2 kg that a controller with an integral holds in place.
+ModelSpec makeHeldLift() {
+  ModelSpec model = makeModel(2.0);
+  model.parameters = {parameter("g", 9, 10), parameter("ki", 20, 60)};
+  model.system.gravity = ex3("-g", "0", "0");
+  addCart(model, "x", "2");
+  model.system.elements.get<ForceLaw>() = {law("x", "u")};
+  ControllerSpec hold;
+  hold.name = name("hold");
+  hold.sample_time = 0.01;
+  hold.delay = ex("0.015");
+  hold.reads = {{name("q"), name("encoder")}};
+  hold.states = {{name("integral"), ex("integral + 0.01 * (0.3 + r - q)"), {}, ""},
+                 {name("count"), ex("count + 1"), {}, ""}};
+  hold.writes = {
+      {name("u"), ex("clamp(80 * (0.3 + r - q) + ki * integral - 8 * difference(q), -90, 90)"), {}, ""}};
+  model.system.controllers = {hold};
+  model.excitation = {wave("r", "0.01", "1")};
+  model.initial.equilibrium.emplace();
+  model.initial.equilibrium->at = EquilibriumAt::kSample;
+  model.outputs = {coordinateOutput("x"), sensedOutput("force", "u", {}),
+                   sensedOutput("integral", "integral", {}), sensedOutput("count", "count", {}),
+                   sensedOutput("encoder", "x", sensor("0.004", "", "0.002"))};
+  return model;
+}
+
+TEST(Controller, HoldsAnEquilibriumInItsLoop) {
+  ModelSpec model = makeHeldLift();
+  model.excitation = {wave("r", "0", "1")};
+  const MatrixXd response = runModel(model, kSampledTimes, Eigen::Vector2d(9.5, 40.0));
+  for (Eigen::Index i = 0; i < kSampledTimes.size(); ++i) {
+    EXPECT_NEAR(response(i, 0), 0.3, 1e-9);
+    EXPECT_NEAR(response(i, 1), 2.0 * 9.5, 1e-8);
+    EXPECT_NEAR(response(i, 2), 2.0 * 9.5 / 40.0, 1e-9);
+    EXPECT_NEAR(response(i, 3), std::floor(kSampledTimes[i] / 0.01 + 1e-6) + 1.0, 1e-9);
+  }
+  model.initial.equilibrium->at = EquilibriumAt::kBoxCenter;
+  EXPECT_NEAR(runModel(model, kSampledTimes, Eigen::Vector2d(9.5, 40.0))(7, 0), 0.3, 1e-9);
+}
+
+TEST(Controller, HasExactDerivativesFromAnEquilibriumOn) {
+  EXPECT_LT(compareDerivatives(makeHeldLift()), 1e-5);
+}
+
+TEST(Motion, ThatJumpsIsRefusedWithItsTime) {
+  ModelSpec model = makeShaker(true);
+  model.excitation[0].sines[0].start = ex("0.5");
+  model.excitation[0].sines[0].phase = ex("1");
+  const std::string error = getError(model);
+  EXPECT_NE(error.find("'z' cannot prescribe a motion: it jumps by 0.0168 at 0.5 s"), std::string::npos)
+      << error;
+  model.excitation[0].sines[0].phase = ex("0");
+  EXPECT_EQ(getError(model), "");
+  model.excitation[0].sines[0].end = ex("0.5 + 2 / 1.2");
+  EXPECT_EQ(getError(model), "");
+}
+
 TEST(Controller, IsRefusedBySimbodysEngineByItsKey) {
   ModelSpec model = makeSampledMotor(1e-3, "0", {});
   model.simulation.engine = Engine::kSimbody;

@@ -254,10 +254,14 @@ NamedValues<Symbol> ControllerRecorder::nameReadings(const std::vector<Symbols>&
                                                      const Symbols& quantities, const Symbols& first_order) {
   NamedValues<Symbol> scope = sampled_.numbers;
   const std::vector<SignalSpec>& signals = sampled_.model.excitation;
+  const std::vector<std::string> rate_names = nameSignalRates(signals, 2);
+  const std::vector<program::Seed> in_time{{sampled_.recorder.time(), 1.0}};
+  const Symbols rates = program::calcTangents(sampled_.signals, in_time);
+  const Symbols second_rates = program::calcTangents(rates, in_time);
   for (std::size_t i = 0; i < signals.size(); ++i) {
     scope.set(signals[i].name.text, sampled_.signals[i]);
-    scope.set(nameRate(signals[i]),
-              program::calcTangents({sampled_.signals[i]}, {{sampled_.recorder.time(), 1.0}})[0]);
+    scope.set(rate_names[i], rates[i]);
+    scope.set(rate_names[signals.size() + i], second_rates[i]);
   }
   scope.set("t", sampled_.recorder.time());
   for (const ControllerSpec& controller : sampled_.model.system.controllers) {

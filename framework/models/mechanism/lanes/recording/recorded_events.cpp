@@ -14,7 +14,7 @@ using Symbols = std::vector<Symbol>;
 /// flights that are seen, no output that is measured tells the difference.
 constexpr double kShortestFlight = 1e-6;
 /// Of what is compared: numbers this close differ by rounding alone.
-constexpr double kRounding = 1e-12;
+constexpr double kEqualTo = 1e-12;
 
 Symbol calcSide(const Symbol& speed) {
   return select(less(Symbol(0.0), speed), Symbol(1.0),
@@ -27,13 +27,18 @@ struct Behind {
 };
 
 class EventRecorder {
+  using Touch = equations::TouchMotion<Symbol>;
+
  public:
   explicit EventRecorder(const SwitchedModel& switched)
       : switched_(switched),
         state_(switched.state),
         stops_(equations::listRigidStops(switched.system.elements)),
-        frictions_(equations::listSticking(switched.system.elements)),
-        held_(switched.calcMotion(state_).held) {}
+        frictions_(equations::listSticking(switched.system.elements)) {
+    const equations::ModelMotion<Symbol> motion = switched.calcMotion(state_);
+    held_ = motion.held;
+    touches_ = equations::calcTouches(switched.system, state_, motion);
+  }
 
   RecordedEvents record() {
     RecordedEvents events;
@@ -45,7 +50,18 @@ class EventRecorder {
     for (int k = 0; k < countAll(); ++k) {
       const bool is_stop = k < countStops();
       events.guards.push_back(is_stop ? recordStopGuard(k) : recordFrictionGuard(k));
+      events.dips.push_back(is_stop ? select(equal(state_.modes[k], Symbol(1.0)), Symbol(1.0), calcGap(k))
+                                    : events.guards.back());
       choose(equal(switched_.event, Symbol(1.0 + k)), is_stop ? recordImpact(k) : recordFriction(k), behind);
+    }
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+      const int k = countAll() + static_cast<int>(i);
+      events.guards.push_back(recordTouchGuard(k, touches_[i]));
+      const Symbol &depth = touches_[i].depth, inside = equal(state_.modes[k], Symbol(1.0));
+      events.dips.push_back(select(inside, depth, -depth));
+      Behind toggled{state_.speeds, state_.modes};
+      toggled.modes[k] = 1.0 - state_.modes[k];
+      choose(equal(switched_.event, Symbol(1.0 + k)), toggled, behind);
     }
     append(state_.coordinates, events.transitions);
     append(behind.speeds, events.transitions);
@@ -57,6 +73,7 @@ class EventRecorder {
 
  private:
   int countStops() const { return static_cast<int>(stops_.size()); }
+  /// But touches, which stand behind these.
   int countAll() const { return countStops() + static_cast<int>(frictions_.size()); }
   const Friction<Symbol>& getFriction(int k) const { return *frictions_[k - countStops()]; }
   Pair getPair(int k) const { return k < countStops() ? Pair(*stops_[k]) : Pair(getFriction(k)); }
@@ -71,6 +88,12 @@ class EventRecorder {
     for (std::size_t i = 0; i < one.modes.size(); ++i) {
       other.modes[i] = select(chosen, one.modes[i], other.modes[i]);
     }
+  }
+
+  /// Until it is apart and goes away, or is in and goes deeper.
+  Symbol recordTouchGuard(int k, const Touch& touch) const {
+    return select(equal(state_.modes[k], Symbol(1.0)), max(touch.depth, touch.rate),
+                  max(-touch.depth, -touch.rate));
   }
 
   /// A coordinate that takes forces has its rate among the speeds.
@@ -91,13 +114,16 @@ class EventRecorder {
     Symbols modes;
     for (int k = 0; k < countStops(); ++k) {
       const Symbol place = getPair(k).of(state_.coordinates), gap = calcGap(k);
-      const Symbol touches = lessOrEqual(abs(gap), kRounding * (abs(place) + abs(place + orient(k, -gap))));
+      const Symbol touches = lessOrEqual(abs(gap), kEqualTo * (abs(place) + abs(place + orient(k, -gap))));
       modes.push_back(both(touches, equal(calcSliding(k, state_.speeds), Symbol(0.0))));
     }
     for (int k = countStops(); k < countAll(); ++k) {
       const Symbol speed = calcSliding(k, state_.speeds), rate = getPair(k).of(state_.speeds);
-      const Symbol slides = less(kRounding * abs(rate), abs(speed));
+      const Symbol slides = less(kEqualTo * abs(rate), abs(speed));
       modes.push_back(select(slides, calcSide(speed), Symbol(0.0)));
+    }
+    for (const Touch& touch : touches_) {
+      modes.push_back(less(Symbol(0.0), touch.depth));
     }
     return modes;
   }
@@ -130,7 +156,7 @@ class EventRecorder {
       behind.speeds[i] += impulse[i];
     }
     for (int j = 0; j < countAll(); ++j) {
-      const Symbol moves = less(kRounding * abs(change), abs(getPair(j).of(impulse)));
+      const Symbol moves = less(kEqualTo * abs(change), abs(getPair(j).of(impulse)));
       const Symbol side = halts && getPair(j) == getPair(k) && !hasSurfaceSpeed(j)
                               ? Symbol(0.0)
                               : calcSide(calcSliding(j, behind.speeds));
@@ -180,7 +206,8 @@ class EventRecorder {
   const ModelState<Symbol>& state_;
   const std::vector<const Stop<Symbol>*> stops_;
   const std::vector<const Friction<Symbol>*> frictions_;
-  const Symbols held_;
+  Symbols held_;
+  std::vector<Touch> touches_;
 };
 
 }  // namespace

@@ -8,10 +8,11 @@
 
 namespace twinmap {
 
-/// Impacts on rigid stops, and friction that begins to stick or to slide: one guard for each switch
-/// (equations/switches.hpp), and the states behind its event.
+/// Impacts on rigid stops, friction that begins to stick or to slide, and dampers that begin to touch or end:
+/// one guard for each switch (equations/switches.hpp), and the states behind its event.
 struct RecordedEvents {
   std::vector<program::Symbol> guards;       ///< empty: nothing switches
+  std::vector<program::Symbol> dips;         ///< as lanes::Equations::dips
   std::vector<program::Symbol> transitions;  ///< of all states, by the phase input `input`
   int input = -1;                            ///< as lanes::Equations::event_input
 };
@@ -31,8 +32,9 @@ struct SwitchedModel {
 /// coordinates change as the impulse has it through the mass matrix. Where the flight that follows would take
 /// less than a millionth of the simulation, 2 e v / acceleration, the coordinate rests on the stop until the
 /// force pulls away: impacts that accumulate end so. Friction whose sliding speed comes to 0 sticks where
-/// that takes at most its static level, and slides again where it takes more. Cost: two records of the motion
-/// for each switch. `guards` and `transitions` alone are filled.
+/// that takes at most its static level, and slides again where it takes more. A touch changes no state: the
+/// force of its damper jumps. Cost: two records of the motion for each stop and friction. All but
+/// `input` is filled.
 RecordedEvents recordEvents(const SwitchedModel& switched);
 
 }  // namespace twinmap

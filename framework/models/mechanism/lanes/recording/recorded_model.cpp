@@ -1,10 +1,12 @@
 #include "framework/models/mechanism/lanes/recording/recorded_model.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/outputs.hpp"
 #include "framework/models/mechanism/equilibrium.hpp"
+#include "framework/models/mechanism/lanes/recording/controller_rest.hpp"
 #include "framework/models/mechanism/lanes/recording/recorded_parameters.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
@@ -32,7 +34,7 @@ class ModelRecorder {
         names_(names),
         loops_(std::move(loops)),
         recorder_(std::make_unique<program::Recorder>()),
-        uses_rates_(usesSignalRates(model)) {
+        rate_orders_(countSignalRates(model)) {
     values_ = recordParameters(model, *recorder_);
     system_ = equations::calcSystemValues(model.system, names, values_);
     mode_count_ = equations::countSwitches(system_.elements);
@@ -44,11 +46,11 @@ class ModelRecorder {
     recorded.parameter_count = static_cast<int>(countSampled(model_));
     recorded.coordinate_count = system_.coordinate_count;
     recorded.state_count = system_.state_count;
-    recorded.mode_count = mode_count_;
     recorded.excitation = recordExcitation(model_.excitation, *recorder_, values_);
     signals_ = recorded.excitation.signals;
     signal_rates_ = calcRates(signals_);
     recordMotion(recorded);
+    recorded.mode_count = mode_count_ + static_cast<int>(watched_.size());
     recordOutputs(recorded);
     recordSwitches(recorded);
     recordRest(recorded);
@@ -96,8 +98,23 @@ class ModelRecorder {
     append(motion.state_rates, recorded.derivatives);
     holdPrescribed(recorded.derivatives);
     recorded.pivots = motion.pivots;
+    recordWatched(motion);
     if (!system_.closures.empty()) {
       recordProjected(recorded);
+    }
+  }
+
+  /// What rests, sticks or flies may move by polynomials or not at all while signals swing, so that steps as
+  /// long as the error of the motion allows would pass over events. What makes these is integrated too: the
+  /// speed that what is held would have gained, and the depths of touches.
+  void recordWatched(const ModelMotion<Symbol>& motion) {
+    const std::vector<std::string> used = listUsedNames(model_);
+    const bool in_time = !signals_.empty() || std::find(used.begin(), used.end(), "t") != used.end();
+    if (mode_count_ > 0 && in_time) {
+      watched_ = motion.held_back;
+      for (const auto& touch : equations::calcTouches(system_, makeState(getFirstOrder()), motion)) {
+        watched_.push_back(touch.rate);
+      }
     }
   }
 
@@ -139,17 +156,18 @@ class ModelRecorder {
     return all;
   }
 
-  /// The modes of switches and the hidden states of sensors and controllers stand behind all others, and no
-  /// condition concerns them. What is sampled changes no mode.
+  /// The modes of switches, what is watched of them and the hidden states of sensors and controllers stand
+  /// behind all others, and no condition concerns them. What is sampled changes no mode.
   void recordOutputs(RecordedModel& recorded) {
     recorded.sampling =
-        recordSampling({model_, names_, values_, *recorder_, getStates(0, countKnown() + mode_count_),
+        recordSampling({model_, names_, values_, *recorder_, getStates(0, countKnown() + recorded.mode_count),
                         makeState(getFirstOrder()).coordinates, signals_, recorded.excitation.input_count,
                         [this](Symbols first_order) {
                           first_order.resize(system_.state_count);
                           return calcQuantities(makeState(std::move(first_order)));
                         }});
     Symbols rates(mode_count_, Symbol(0.0));
+    append(watched_, rates);
     append(recorded.sampling.hidden_rates, rates);
     append(rates, recorded.derivatives);
     if (!recorded.projected.empty()) {
@@ -208,9 +226,14 @@ class ModelRecorder {
     return state;
   }
 
-  /// Time derivatives of signals, where they are used.
-  Symbols calcRates(const Symbols& signals) {
-    return uses_rates_ ? program::calcTangents(signals, {{recorder_->time(), 1.0}}) : Symbols{};
+  /// Time derivatives of signals, of the orders that are used.
+  Symbols calcRates(Symbols signals) {
+    Symbols rates;
+    for (int order = 0; order < rate_orders_; ++order) {
+      signals = program::calcTangents(signals, {{recorder_->time(), 1.0}});
+      append(signals, rates);
+    }
+    return rates;
   }
 
   /// What expressions of outputs may use.
@@ -232,7 +255,7 @@ class ModelRecorder {
                              std::move(speeds),
                              getFirstOrder(),
                              Symbols(model_.excitation.size(), Symbol(0.0)),
-                             Symbols(uses_rates_ ? model_.excitation.size() : 0, Symbol(0.0))};
+                             Symbols(rate_orders_ * model_.excitation.size(), Symbol(0.0))};
     for (const int i : findPrescribed()) {
       state.prescribed.push_back({i, 0.0});
     }
@@ -241,7 +264,12 @@ class ModelRecorder {
 
   void recordRest(RecordedModel& recorded) {
     const int n = system_.coordinate_count;
-    const ModelMotion<Symbol> rest = calcMotion(makeQuietState(Symbols(n, Symbol(0.0))));
+    const ModelState<Symbol> quiet = makeQuietState(Symbols(n, Symbol(0.0)));
+    ModelMotion<Symbol> rest = calcMotion(quiet);
+    if (!model_.system.controllers.empty()) {
+      addControllersAtRest(model_, names_, values_, quiet, calcQuantitiesAtRest(quiet, rest),
+                           rest.state_rates);
+    }
     recorded.rest_rates = rest.accelerations;
     append(rest.state_rates, recorded.rest_rates);
     recorded.rest_pivots = rest.pivots;
@@ -261,6 +289,18 @@ class ModelRecorder {
     for (const Symbol& state : moving.states) {
       append(program::calcTangents(changes, {{state, 1.0}}), recorded.linearization);
     }
+  }
+
+  Symbols calcQuantitiesAtRest(const ModelState<Symbol>& quiet, const ModelMotion<Symbol>& rest) const {
+    NamedValues<Symbol> named = equations::nameState(model_, names_, quiet, rest.rates, values_);
+    for (const std::string& coordinate : names_.getCoordinateNames()) {
+      named.set(coordinate + "_ddot", Symbol(0.0));
+    }
+    Symbols quantities;
+    for (const OutputSpec& output : model_.outputs) {
+      quantities.push_back(equations::calcOutput(output, names_, named, system_, quiet, rest));
+    }
+    return quantities;
   }
 
   static void append(const Symbols& more, Symbols& symbols) {
@@ -327,8 +367,9 @@ class ModelRecorder {
   NamedValues<Symbol> values_;
   SystemValues<Symbol> system_;
   Symbols signals_, signal_rates_;
+  Symbols watched_;  ///< rates, of states behind the modes
   int mode_count_ = 0;
-  const bool uses_rates_;
+  const int rate_orders_;  ///< of signals
 };
 
 }  // namespace
