@@ -79,9 +79,10 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"StopNeitherElasticNorRigid",
                 "system.stops=[{coordinate: y, below: 0}]",
                 {"system.stops[0]", "must give either 'stiffness'"}},
-        Mistake{"RigidStopWithAnExponent",
-                "system.stops=[{coordinate: y, below: 0, restitution: 0.5, exponent: 1.5}]",
-                {"system.stops[0]", "must not give 'exponent', 'dissipation' or 'damping' with 'restitution'"}},
+        Mistake{
+            "RigidStopWithAnExponent",
+            "system.stops=[{coordinate: y, below: 0, restitution: 0.5, exponent: 1.5}]",
+            {"system.stops[0]", "must not give 'exponent', 'dissipation' or 'damping' with 'restitution'"}},
         Mistake{"RestitutionWithAUnit",
                 "system.stops=[{coordinate: y, below: 0, restitution: d_y}]",
                 {"system.stops[0].restitution", "does not come out in 1"}},
