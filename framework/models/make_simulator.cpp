@@ -3,6 +3,7 @@
 #include "framework/models/external/program_simulator.hpp"
 #include "framework/models/fmu/fmu_simulator.hpp"
 #include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/simulation/simulation_failure.hpp"
 
 namespace twinmap {
 namespace {
@@ -21,7 +22,12 @@ std::unique_ptr<Simulator> make(const ModelSpec& model, const Eigen::VectorXd& t
   if (model.source) {
     return std::make_unique<FmuSimulator>(model, times, modes);
   }
-  return std::make_unique<MultibodySimulator>(model, times, modes, check);
+  try {
+    return std::make_unique<MultibodySimulator>(model, times, modes, check);
+  } catch (const SimulationFailure& failure) {  // numbers at the centre of the bounds
+    const std::string place = toString(failure.getWhere());
+    throw ExperimentError((place.empty() ? "" : place + ": ") + failure.what());
+  }
 }
 
 }  // namespace

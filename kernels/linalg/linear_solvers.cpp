@@ -19,7 +19,7 @@ LinearFit fitLinear(const MatrixXd& a, const MatrixXd& b) {
 }
 
 VectorXd solveMinimumNorm(const MatrixXd& a, const VectorXd& b) {
-  return Orthogonal(a).solve(b);
+  return a.size() == 0 ? VectorXd::Zero(a.cols()) : VectorXd(Orthogonal(a).solve(b));
 }
 
 MatrixXd calcOrthonormalBasis(const MatrixXd& a) {

@@ -134,7 +134,17 @@ class SampleFinder {
       step_ = calcMedianStep(samples.times);
       tolerance_ = std::max(kSameTime * step_, kRounding * std::abs(start));
     }
-    interpolates_ = samples.times.size() >= InterpolationWeights::kPoints && step_ <= kSlack * interval;
+    sparse_ = step_ > kSlack * interval;
+    interpolates_ = samples.times.size() >= InterpolationWeights::kPoints && !sparse_;
+  }
+
+  const VectorXd& getTimes() const { return samples_.times; }
+
+  /// Why nothing is interpolated; "" where it is.
+  std::string describeSparse() const {
+    return sparse_
+               ? fmt::format("; its samples are {} apart, too far to be interpolated", describeTime(step_))
+               : "";
   }
 
   FoundSample find(double t) const {
@@ -183,7 +193,7 @@ class SampleFinder {
   const Samples& samples_;
   const std::optional<Bounds> range_;
   double step_ = 0.0, tolerance_ = 0.0;
-  bool interpolates_ = false;
+  bool interpolates_ = false, sparse_ = false;
 };
 
 /// "12 of 100 samples of x: 0.4 s to 0.48 s ...": where they are missing, the longest stretch.
@@ -206,15 +216,28 @@ std::string describeMissing(const std::string& column, const VectorXd& needed, c
   return text;
 }
 
-void requireUsable(const Table& table, const std::string& column, const VectorXd& needed,
-                   const VectorXd& found) {
+/// Why none of a column's samples, which are there at `times`, can be used.
+std::string describeUseless(const VectorXd& times, const VectorXd& needed) {
+  if (times.size() == 0) {
+    return "has no number in any row; check the sensor and its cable";
+  }
+  const std::string first = describeTime(times.minCoeff()), last = describeTime(times.maxCoeff());
+  if (times.size() == 1) {
+    return fmt::format("has a single time, {}, in all rows; name the column of times (measurement.time)",
+                       first);
+  }
+  return fmt::format(
+      "has no sample at any needed time, {} to {}, but some from {} to {}; give the time in the file that is "
+      "the model's 0 (--start), or the unit of its times, as 't [ms]'",
+      describeTime(needed[0]), describeTime(needed[needed.size() - 1]), first, last);
+}
+
+void requireUsable(const Table& table, const std::string& column, const VectorXd& times,
+                   const VectorXd& needed, const VectorXd& found) {
   constexpr Index kMin = 4;
   const Samples there = takeSamples(needed, found);
   if (there.values.size() == 0) {
-    throw MeasurementError(fmt::format(
-        "{}: column '{}' has no sample at any needed time, {} to {}; give the time in the file that is the "
-        "model's 0 (--start), or the unit of its times, as 't [ms]'",
-        table.source, column, describeTime(needed[0]), describeTime(needed[needed.size() - 1])));
+    throw MeasurementError(table.source + ": column '" + column + "' " + describeUseless(times, needed));
   }
   if (there.values.size() >= kMin && (there.values.array() == there.values[0]).all()) {
     throw MeasurementError(table.source + ": column '" + column + "' is " + toText(there.values[0]) +
@@ -246,7 +269,7 @@ void addOutput(const Table& table, const std::string& column, const SampleFinder
       available.clipped.push_back({row, sample.side > 0.0 ? range->upper : range->lower, sample.side});
     }
   }
-  requireUsable(table, column, needed, found);
+  requireUsable(table, column, finder.getTimes(), needed, found);
   if (clipped > 0) {
     available.remarks.push_back(fmt::format(
         "{} of {} samples of {} are at a limit of its range: what they say is that the response is "
@@ -254,7 +277,7 @@ void addOutput(const Table& table, const std::string& column, const SampleFinder
         clipped, needed.size(), column));
   }
   if (known.hasNaN()) {
-    available.remarks.push_back(describeMissing(column, needed, known));
+    available.remarks.push_back(describeMissing(column, needed, known) + finder.describeSparse());
     available.missing += known.array().isNaN().count();
   }
 }

@@ -14,6 +14,7 @@
 #include "framework/experiment/model/named_forces.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/prior.hpp"
+#include "framework/experiment/points/prior_marginal.hpp"
 
 namespace twinmap {
 namespace {
@@ -27,6 +28,20 @@ void checkRelativeTo(const ParameterSpec& parameter) {
   }
 }
 
+/// Bounds without any of the prior's central .9999 contradict it.
+void checkPriorRange(const ParameterSpec& parameter) {
+  if (!parameter.prior || !parameter.prior->hasRange()) {
+    return;
+  }
+  const Bounds range = calcPriorRange(*parameter.prior);
+  if (range.upper < parameter.bounds.lower || range.lower > parameter.bounds.upper) {
+    throw ExperimentError(
+        parameter.name.where, parameter.name.text,
+        fmt::format("has a prior that lies outside its bounds: 99.99 % of it is in [{:.4g}, {:.4g}]",
+                    range.lower, range.upper));
+  }
+}
+
 void checkPriors(const ModelSpec& model) {
   for (const ParameterSpec& input : model.inputs) {
     if (input.prior) {
@@ -34,7 +49,11 @@ void checkPriors(const ModelSpec& model) {
                             "is a known input, given with each measurement, so that it has no prior");
     }
   }
-  Prior(collectUnknown(model), model.priors);
+  const std::vector<ParameterSpec> unknown = collectUnknown(model);
+  for (const ParameterSpec& parameter : unknown) {
+    checkPriorRange(parameter);
+  }
+  Prior(unknown, model.priors);
 }
 
 /// "slider, pin, screw and cylinder"

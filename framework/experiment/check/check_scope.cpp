@@ -88,11 +88,11 @@ void CheckScope::define(const Name& name, const std::optional<Dimension>& dimens
   if (dimension) {
     scaled = calcUnitChange(*dimension) * reference_value;
   }
-  add(name, {reference_value, scaled});
+  add(name, {reference_value, scaled, dimension, {}});
 }
 
 void CheckScope::define(const Name& name, const Expression& expression) {
-  Symbol symbol{check(expression, ""), {}};
+  Symbol symbol{check(expression, ""), {}, {}, getUsedNames(expression)};
   if (hasUnit(expression)) {
     symbol.scaled_value = calcScaled(expression, true);
   }
@@ -101,7 +101,7 @@ void CheckScope::define(const Name& name, const Expression& expression) {
 
 void CheckScope::defineDifference(const Name& name, const Expression& expression) {
   constexpr double kSomeDuration = 0.67;
-  Symbol symbol{check(expression, "") / kSomeDuration, {}};
+  Symbol symbol{check(expression, "") / kSomeDuration, {}, {}, getUsedNames(expression)};
   if (hasUnit(expression)) {
     symbol.scaled_value = calcScaled(expression, true) / (calcUnitChange({{"s", 1}}) * kSomeDuration);
   }
@@ -155,7 +155,7 @@ void CheckScope::defineTime() {
   constexpr double kSomeTime = 0.29;
   changes_ = true;
   names_.emplace_back("t");
-  symbols_.push_back({kSomeTime, calcUnitChange({{"s", 1}}) * kSomeTime});
+  symbols_.push_back({kSomeTime, calcUnitChange({{"s", 1}}) * kSomeTime, Dimension{{"s", 1}}, {}});
 }
 
 std::optional<Dimension> CheckScope::readUnit(const std::string& unit, const SourceLocation& where) {
@@ -185,7 +185,7 @@ double CheckScope::check(const Expression& expression, const std::string& unit) 
   const bool comparable = std::isfinite(value) && std::isfinite(scaled) && value != 0.0;
   if (comparable && std::abs(scaled - change * value) > kTolerance * std::abs(change * value)) {
     throw ExperimentError(expression.where, expression.text,
-                          "does not come out in " + unit + " with the units stated for the names it uses");
+                          "does not come out in " + unit + " with the units stated: " + describeUnits(used));
   }
   return value;
 }
@@ -245,7 +245,7 @@ void CheckScope::requireLikeTerms(const Expression& expression) const {
       const ScaledTerm c = operand(2);
       if (alike && !areAlike(a, b)) {
         throw ExperimentError(expression.where, expression.text,
-                              "adds or compares quantities of different units, by the units stated");
+                              "adds or compares quantities of different units: " + describeUnits(tree.names));
       }
       // a number beside a quantity has its unit; an exponent has none
       const bool has_number = alike ? a.has_number && b.has_number
@@ -263,6 +263,27 @@ bool CheckScope::isUnitStated(const std::vector<std::string>& names) const {
     const auto found = std::find(names_.begin(), names_.end(), name);
     return found != names_.end() && symbols_[found - names_.begin()].scaled_value.has_value();
   });
+}
+
+/// "k in N/m, x in m"; a named expression by what it uses.
+std::string CheckScope::describeUnits(const std::vector<std::string>& names) const {
+  std::vector<std::string> open(names.rbegin(), names.rend()), listed;
+  std::string text;
+  while (!open.empty()) {
+    const std::string name = open.back();
+    open.pop_back();
+    const auto found = std::find(names_.begin(), names_.end(), name);
+    if (found == names_.end() || std::find(listed.begin(), listed.end(), name) != listed.end()) {
+      continue;
+    }
+    listed.push_back(name);
+    const Symbol& symbol = symbols_[found - names_.begin()];
+    if (symbol.dimension) {
+      text += (text.empty() ? "" : ", ") + name + " in " + describeUnit(*symbol.dimension);
+    }
+    open.insert(open.end(), symbol.of.rbegin(), symbol.of.rend());
+  }
+  return text;
 }
 
 double CheckScope::calcScaled(const Expression& expression, bool scaled) const {

@@ -47,6 +47,8 @@ class CheckScope {
   struct Symbol {
     double reference_value;
     std::optional<double> scaled_value;  ///< in other base units; none where its unit is not known
+    std::optional<Dimension> dimension;  ///< of the unit that was stated
+    std::vector<std::string> of;         ///< names that a named expression uses
   };
   /// A function by the change of its argument and of its value in other base units, where they are known.
   struct Curve {
@@ -61,6 +63,7 @@ class CheckScope {
   void requireLikeTerms(const Expression& expression) const;
   bool isUnitStated(const std::vector<std::string>& names) const;
   double calcScaled(const Expression& expression, bool scaled) const;
+  std::string describeUnits(const std::vector<std::string>& names) const;
 
   std::vector<std::string> names_;
   std::vector<Symbol> symbols_;

@@ -27,8 +27,8 @@ std::vector<Coordinate> collectCoordinates(const SystemSpec& system) {
     if (body.joint.coordinates.size() != expected.size()) {
       throw ExperimentError(
           body.name.where, body.name.text,
-          fmt::format("has {} names in joint.coordinates, but its type of joint has {} coordinates",
-                      body.joint.coordinates.size(), expected.size()));
+          fmt::format("has {} in joint.coordinates, of a joint with {} coordinate{}",
+                      body.joint.coordinates.size(), expected.size(), expected.size() == 1 ? "" : "s"));
     }
     for (std::size_t i = 0; i < expected.size(); ++i) {
       coordinates.push_back({body.joint.coordinates[i], getUnit(expected[i].kind), expected[i].takes_forces});

@@ -61,13 +61,16 @@ class Parser {
     if (peek() == '=') {
       throw ExperimentError(expression_.where, text_, "must not assign; write '==' to compare");
     }
-    const bool follows_digit = at_ > 0 && std::isdigit(static_cast<unsigned char>(text_[at_ - 1])) != 0;
+    const std::size_t last = text_.find_last_not_of(" \t", at_ == 0 ? 0 : at_ - 1);
+    const bool follows_digit = last < at_ && std::isdigit(static_cast<unsigned char>(text_[last])) != 0;
     if (follows_digit && at_ + 1 < text_.size() && text_[at_] == ',' &&
         std::isdigit(static_cast<unsigned char>(text_[at_ + 1])) != 0) {
       fail("a decimal point is '.', not ','");
     }
     if (peek() != '\0') {
-      fail("an operator is missing");
+      fail(follows_digit && isNameCharacter(text_[at_])
+               ? "an operator is missing (a unit is not written here)"
+               : "an operator is missing");
     }
     return std::move(tree_);
   }
@@ -167,7 +170,8 @@ class Parser {
       return parseNumber();
     }
     if (!isNameCharacter(next)) {
-      fail("a number, a name or '(' is missing");
+      const bool as_python = next == '*' && at_ > 0 && text_[at_ - 1] == '*';
+      fail(as_python ? "a power is written x^2, not x**2," : "a number, a name or '(' is missing");
     }
     return parseNamed();
   }
@@ -177,7 +181,7 @@ class Parser {
     const char* const end = text_.data() + text_.size();
     const auto [after, error] = std::from_chars(text_.data() + at_, end, value);
     if (error != std::errc() || (after != end && isNameCharacter(*after))) {
-      fail("what is not a number begins with a digit");
+      fail("what is not a number begins with a digit (a unit is not written here)");
     }
     at_ = static_cast<std::size_t>(after - text_.data());
     return addLiteral(value);
@@ -270,6 +274,16 @@ ExpressionTree parseExpression(const Expression& expression) {
 
 std::vector<std::string> getUsedNames(const Expression& expression) {
   return parseExpression(expression).names;
+}
+
+std::vector<std::string> listFunctions() {
+  std::vector<std::string> names{"atan2", "clamp"};
+  for (const auto* functions : {&kUnaryFunctions, &kFolds}) {
+    for (const auto& [name, operation] : *functions) {
+      names.push_back(name);
+    }
+  }
+  return names;
 }
 
 bool isReservedName(const std::string& name) {

@@ -46,4 +46,7 @@ struct ExpressionTree {
 /// Cost: linear in its length.
 ExpressionTree parseExpression(const Expression& expression);
 
+/// Names of the grammar's functions, for messages.
+std::vector<std::string> listFunctions();
+
 }  // namespace twinmap

@@ -35,6 +35,16 @@ std::string findCall(const std::string& text, const std::string& function) {
   return "";
 }
 
+/// Whether "v * abs(v)" or "abs(v) * v" stands there, which has no kink.
+bool isDrag(std::string text, std::string argument) {
+  for (std::string* one : {&text, &argument}) {
+    one->erase(std::remove(one->begin(), one->end(), ' '), one->end());
+  }
+  const std::string call = "abs(" + argument + ")";
+  return text.find(argument + "*" + call) != std::string::npos ||
+         text.find(call + "*" + argument) != std::string::npos;
+}
+
 /// As an operand: a name as it is, all else in parentheses.
 std::string makeOperand(const std::string& argument) {
   return std::all_of(argument.begin(), argument.end(), isPartOfName) ? argument : "(" + argument + ")";
@@ -47,7 +57,7 @@ std::string describeJump(const Expression& force) {
     return fmt::format("sign({0}) jumps: write tanh({1} / eps), eps a small value of {0}", of,
                        makeOperand(of));
   }
-  if (const std::string of = findCall(force.text, "abs"); !of.empty()) {
+  if (const std::string of = findCall(force.text, "abs"); !of.empty() && !isDrag(force.text, of)) {
     return fmt::format("abs({0}) has a kink: write sqrt({1}^2 + eps^2), eps a small value of {0}", of,
                        makeOperand(of));
   }
@@ -59,11 +69,21 @@ std::string describeJump(const Expression& force) {
   return "";
 }
 
+std::string describeJump(const ForceLaw<Expression>& law) {
+  const std::string& on = law.coordinate.text;
+  return findCall(law.force.text, "sign") == on + "_dot"
+             ? fmt::format(
+                   "sign({0}_dot) jumps: give this term as friction: [{{coordinate: {0}, model: coulomb, "
+                   "coulomb: LEVEL}}]",
+                   on)
+             : describeJump(law.force);
+}
+
 std::vector<std::string> listJumps(const SystemSpec& system) {
   std::vector<std::string> jumps;
   const std::vector<ForceLaw<Expression>>& laws = system.elements.get<ForceLaw>();
   for (std::size_t i = 0; i < laws.size(); ++i) {
-    if (const std::string jump = describeJump(laws[i].force); !jump.empty()) {
+    if (const std::string jump = describeJump(laws[i]); !jump.empty()) {
       jumps.push_back(fmt::format("system.force_laws[{}].force: {}", i, jump));
     }
   }

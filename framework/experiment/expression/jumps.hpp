@@ -13,6 +13,10 @@ namespace twinmap {
 /// abs() nor floor() or rint(). The first of several.
 std::string describeJump(const Expression& force);
 
+/// The same of a force law. A jump with the speed of its own coordinate is dry friction, which the element
+/// `friction` simulates exactly.
+std::string describeJump(const ForceLaw<Expression>& law);
+
 /// "system.force_laws[0].force: sign(x_dot) jumps: ..." of each such force of a system.
 std::vector<std::string> listJumps(const SystemSpec& system);
 

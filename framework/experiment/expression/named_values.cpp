@@ -57,7 +57,7 @@ const FunctionExpansion& DefinedNames::findFunction(const ExpressionTree::Call& 
                                                     const Expression& expression) const {
   const auto found = functions_.find(call.name);
   if (found == functions_.end()) {
-    std::vector<std::string> known;
+    std::vector<std::string> known = listFunctions();
     for (const auto& [name, expansion] : functions_) {
       known.push_back(name);
     }

@@ -158,6 +158,21 @@ Dimension parseUnit(const std::string& unit, const SourceLocation& where) {
   return dimension;
 }
 
+std::string describeUnit(const Dimension& dimension) {
+  for (const char* unit :
+       {"1",       "m",   "kg",   "s",    "Hz",    "N", "N/m", "N s/m", "N m", "N m s/rad", "N/m^2", "N/m^3",
+        "N s2/m2", "m/s", "m/s2", "kg m", "kg m2", "W", "V",   "ohm",   "H",   "V s/rad",   "N/A"}) {
+    if (parseUnit(unit, {}) == dimension) {
+      return unit;
+    }
+  }
+  std::string text;
+  for (const auto& [base, power] : dimension) {
+    text += (text.empty() ? "" : " ") + base + (power == 1.0 ? "" : toText(power));
+  }
+  return text;
+}
+
 UnitConversion calcUnitConversion(const std::string& from, const std::string& to,
                                   const SourceLocation& where) {
   if (from == to) {

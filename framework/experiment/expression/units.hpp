@@ -17,6 +17,10 @@ using Dimension = std::map<std::string, double>;
 /// not coherent SI (mm, deg, kN): values are used as they stand, so N/mm would be a silent factor of 1000.
 Dimension parseUnit(const std::string& unit, const SourceLocation& where);
 
+/// A dimension as an engineer writes its unit, "N/m", for messages; one without such a name by powers of base
+/// units, "kg m s-3". Radians are left out.
+std::string describeUnit(const Dimension& dimension);
+
 /// value [to] = factor * value [from] + offset.
 struct UnitConversion {
   double factor = 1.0, offset = 0.0;

@@ -29,7 +29,8 @@ void requireOwnSection(const YamlEntry& section) {
   if (std::find(names.begin(), names.end(), section.key) == names.end()) {
     throw ExperimentError(section.key_where, section.key,
                           "is not a section that a trial may have of its own (" + listNames(names) +
-                              "); the machine and its parameters are shared by all trials");
+                              "); the machine and its parameters are shared by all trials" +
+                              suggestName(section.key, names));
   }
 }
 

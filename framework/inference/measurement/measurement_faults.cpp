@@ -26,6 +26,8 @@ constexpr UnitFactor kFactors[] = {
     {1.0 / 57.29577951308232, "57.3 times too small", "", "", "multiply it by 57.3"},
     {9.81, "9.81 times too large", ", as m/s2 in the place of g", "", "divide it by 9.81"},
     {1.0 / 9.81, "9.81 times too small", ", as g in the place of m/s2", "", "multiply it by 9.81"},
+    {100.0, "100 times too large", ", as cm in the place of m", "m", "divide it by 100"},
+    {0.01, "100 times too small", "", "", "multiply it by 100"},
     {-1.0, "of the other sign", "", "", "turn its sign"}};
 
 std::string describe(const UnitFactor& factor, const std::string& output, const std::string& unit) {
@@ -153,6 +155,24 @@ bool dropClipped(VectorXd& response, Index first, Index count, Index& dropped) {
   return dropped > 0;
 }
 
+/// Factors between units. One that makes an output small explains it only where a zero does not do as well.
+void tryUnits(const VectorXd& measured, const ResponseLayout& layout, Index output,
+              const MisfitOfResponse& calcMisfit, Search& search) {
+  constexpr double kClearly = 0.5;  // of the chi-square of a zero
+  const Index times = layout.times.size(), first = layout.getRow(output, 0);
+  VectorXd silent = measured;
+  silent.segment(first, times).setZero();
+  const double largest = kClearly * calcMisfit(silent);
+  for (const UnitFactor& unit : kFactors) {
+    VectorXd corrected = measured;
+    corrected.segment(first, times) /= unit.factor;
+    if (unit.factor <= 1.0 || calcMisfit(corrected) < largest) {
+      search.tryOut(corrected, describe(unit, layout.output_names[static_cast<std::size_t>(output)],
+                                        layout.output_units[static_cast<std::size_t>(output)]));
+    }
+  }
+}
+
 }  // namespace
 
 std::string explainByFault(const VectorXd& measured, const ResponseLayout& layout, double chi_square,
@@ -165,14 +185,13 @@ std::string explainByFault(const VectorXd& measured, const ResponseLayout& layou
   }
   Search search(kLeft * chi_square, calcMisfit);
   const Index times = layout.times.size();
+  if (layout.getOutputCount() > 1) {
+    search.tryOut(-measured, "all outputs are of the other sign: turn their signs");
+  }
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
     const Index first = layout.getRow(output, 0);
-    for (const UnitFactor& unit : kFactors) {
-      VectorXd corrected = measured;
-      corrected.segment(first, times) /= unit.factor;
-      search.tryOut(corrected, describe(unit, name, layout.output_units[static_cast<std::size_t>(output)]));
-    }
+    tryUnits(measured, layout, output, calcMisfit, search);
     trySpikes(measured, layout, output, calcMisfit, search);
     VectorXd unclipped = measured;
     if (Index dropped = 0; dropClipped(unclipped, first, times, dropped)) {

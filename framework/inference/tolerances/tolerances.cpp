@@ -106,7 +106,7 @@ void warnOfCoarse(const ModelSpec& model, const IntegrationError& error, const T
 /// One line: from what, to what, why; what is left where that is not negligible.
 void logTightened(const ModelSpec& model, const IntegrationError& error, const Tightened& taken) {
   const std::string text =
-      fmt::format("tolerances of the integration: {} instead of {}, whose error {}",
+      fmt::format("integration tolerances tightened to {}; with {} the error of the integration {}",
                   describe(taken.simulation), describe(model.simulation), describe(error, model.parameters));
   if (taken.error.isNegligible()) {
     logInfo(text);

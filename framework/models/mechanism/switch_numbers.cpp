@@ -15,10 +15,18 @@ void requireBetween(const Expression& expression, const Quantity& quantity, doub
   }
 }
 
+void checkPlay(const SystemSpec& system, ModelNumbers& numbers) {
+  for (const Backlash<Expression>& backlash : system.elements.get<Backlash>()) {
+    requireBetween(backlash.gap, {"backlash of '" + backlash.coordinate.text + "'", "gap", ""},
+                   std::numeric_limits<double>::infinity(), "must not be negative", numbers);
+  }
+}
+
 }  // namespace
 
 void checkSwitchNumbers(const SystemSpec& system, ModelNumbers& numbers) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
+  checkPlay(system, numbers);
   for (const Stop<Expression>& stop : system.elements.get<Stop>()) {
     if (stop.isRigid()) {
       requireBetween(*stop.restitution, {"stop on '" + stop.coordinate.text + "'", "restitution", ""}, 1.0,

@@ -1,5 +1,5 @@
-"""Sixty broken experiments and recordings, drawn with a fixed seed: the first line that says what is wrong names the cause,
-each time. TWINMAP_BROKEN says how many (60), TWINMAP_BROKEN_SEED which (2026); TWINMAP_BROKEN_SHOW prints the lines."""
+"""Broken experiments and recordings, drawn with a fixed seed: the first line that says what is wrong names the cause,
+each time. TWINMAP_BROKEN says how many (each kind once), TWINMAP_BROKEN_SEED which (2026); TWINMAP_BROKEN_SHOW prints the lines."""
 import os
 import random
 import re
@@ -19,6 +19,8 @@ from broken_inputs import (
     load,
     read_rows,
 )
+from broken_machines import MACHINE_FAULTS
+from broken_tables import TABLE_FAULTS, TABLE_FILE_FAULTS, TWO_COLUMN_FAULTS
 from support import EXPERIMENTS, TWINMAP, FolderTestCase
 
 CART, BEAMS = MACHINES[:2]
@@ -95,7 +97,7 @@ class BrokenInputs(FolderTestCase):
     def jump(self, _generator, path):
         path = path.with_suffix(".yaml")
         path.write_text(get_file(CART).read_text().replace("F - k3 * x^3", "F - k3 * x^3 - 0.5 * sign(x_dot)"))
-        return r"sign\(x_dot\) jumps: write tanh", ("infer", path, self.record(CART))
+        return r"sign\(x_dot\) jumps: give this term as friction", ("infer", path, self.record(CART))
 
     def list_faults(self):
         """(name, extension of what is broken, break_...() of the fault)"""
@@ -104,15 +106,21 @@ class BrokenInputs(FolderTestCase):
             ("no such recording", ".csv", self.forget_recording),
             ("sign in a force", ".yaml", self.jump),
         ]
-        faults += [(fault.__name__, ".yaml", partial(self.break_experiment, fault)) for fault in EXPERIMENT_FAULTS]
+        faults += [
+            (fault.__name__, ".yaml", partial(self.break_experiment, fault))
+            for fault in EXPERIMENT_FAULTS + MACHINE_FAULTS
+        ]
         faults += [(fault[0], ".yaml", partial(self.break_text, fault)) for fault in TEXT_FAULTS]
-        faults += [(fault.__name__, ".csv", partial(self.break_rows, fault)) for fault in ROW_FAULTS]
-        faults += [(fault.__name__, ".csv", partial(self.break_rows, fault, machines=[BEAMS])) for fault in BEAM_FAULTS]
-        return faults + [(fault[0], ".csv", partial(self.break_file, fault)) for fault in FILE_FAULTS]
+        faults += [(fault.__name__, ".csv", partial(self.break_rows, fault)) for fault in ROW_FAULTS + TABLE_FAULTS]
+        for fault in BEAM_FAULTS + TWO_COLUMN_FAULTS:
+            faults.append((fault.__name__, ".csv", partial(self.break_rows, fault, machines=[BEAMS])))
+        for fault in FILE_FAULTS + TABLE_FILE_FAULTS:
+            faults.append((fault[0], ".csv", partial(self.break_file, fault)))
+        return faults
 
     def test_first_line_names_the_cause(self):
         generator = random.Random(int(os.environ.get("TWINMAP_BROKEN_SEED", 2026)))
-        count = int(os.environ.get("TWINMAP_BROKEN", 60))
+        count = int(os.environ.get("TWINMAP_BROKEN", len(self.list_faults())))
         faults, drawn = self.list_faults(), []
         while len(drawn) < count:  # each once before any comes again
             drawn += generator.sample(faults, len(faults))

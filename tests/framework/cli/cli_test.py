@@ -128,7 +128,9 @@ class ExitCodes(TestCase):
         law = "system.force_laws[0].force=F - 5 * sign(x_dot)"
         result = call("simulate", CART, law, "simulation.max_steps=200")
         self.assertEqual(result.returncode, 1)
-        self.assertRegex(result.stderr, r"step limit of 200 .*force_laws\[0\].*sign\(x_dot\) jumps: write tanh")
+        self.assertRegex(
+            result.stderr, r"step limit of 200 .*force_laws\[0\].*sign\(x_dot\) jumps: give this term as friction"
+        )
 
     def test_bounds_that_contain_0_give_errors_relative_to_the_range_and_a_remark(self):
         few = ["design.train.samples=60", "design.test.samples=20", "evaluation.limit=false", "refine=never"]

@@ -323,7 +323,7 @@ class Direct(FolderTestCase):
     def test_coarse_tolerances_are_named_and_automatic_ones_follow_the_noise(self):
         low = ["noise.scale=1e-4", "--noise", "--csv", self.folder / "low.csv"]
         result = call("simulate", CART, *low)
-        self.assertIn("tolerances of the integration: ", result.stderr)
+        self.assertIn("integration tolerances tightened to ", result.stderr)
         self.assertNotIn("warning", result.stderr)
         path = self.folder / "coarse.yaml"
         path.write_text(CART.read_text().replace("{duration: 5}", "{duration: 5, relative_tolerance: 1e-3}"))

@@ -131,7 +131,9 @@ TEST(Expression, ErrorsNamePlaceValueRuleAndCharacter) {
       {"1, 2", "an operator is missing at character 2"},
       {"x # 2", "an operator is missing at character 3"},
       {"x ? 1", "':' is missing at character 6"},
-      {"2x", "what is not a number begins with a digit at character 1"},
+      {"2x", "what is not a number begins with a digit (a unit is not written here) at character 1"},
+      {"1.5 kg", "an operator is missing (a unit is not written here) at character 5"},
+      {"x ** 3", "a power is written x^2, not x**2, at character 4"},
       {"1 + f(x)", "there is no function 'f' at character 5"},
       {"sin(x, 2)", "'sin' takes one operand, not 2, at character 1"},
       {"atan2(x)", "'atan2' takes two operands, not 1, at character 1"}};

@@ -19,10 +19,23 @@ TEST(Jumps, AreNamedWithTheirSmoothForm) {
   EXPECT_EQ(describe("floor(x / pitch)"), "floor(x / pitch) jumps: write the force without it");
 }
 
+TEST(Jumps, WithTheOwnSpeedAreDryFriction) {
+  ForceLaw<Expression> law;
+  law.coordinate.text = "x";
+  law.force = Expression{"F - mu * sign(x_dot)", {}};
+  EXPECT_EQ(
+      describeJump(law),
+      "sign(x_dot) jumps: give this term as friction: [{coordinate: x, model: coulomb, coulomb: LEVEL}]");
+  law.coordinate.text = "y";  // of another coordinate it is none
+  EXPECT_EQ(describeJump(law), describe("F - mu * sign(x_dot)"));
+}
+
 TEST(Jumps, AreNotSeenInNamesOrSmoothForces) {
   EXPECT_EQ(describe("F - mu * tanh(x_dot / v0)"), "");
   EXPECT_EQ(describe("design(3) + signal * x + absolute"), "");
   EXPECT_EQ(describe("sign(x"), "");
+  EXPECT_EQ(describe("-c * x_dot * abs(x_dot)"), "");
+  EXPECT_EQ(describe("-c * abs(x_dot)*x_dot"), "");
 }
 
 }  // namespace

@@ -32,6 +32,12 @@ TEST(Units, DimensionsFollowFromTheUnit) {
   EXPECT_TRUE(parseUnit("1", {}).empty());
 }
 
+TEST(Units, AreDescribedAsEngineersWriteThem) {
+  EXPECT_EQ(describeUnit(parseUnit("kg/s2", {})), "N/m");
+  EXPECT_EQ(describeUnit(parseUnit("rad", {})), "1");
+  EXPECT_EQ(describeUnit({{"kg", 1.0}, {"s", -3.5}}), "kg s-3.5");
+}
+
 TEST(Units, RefusesWhatIsNoCoherentUnit) {
   for (const char* unit : {"N/mm", "mm", "deg", "kN", "g", "furlongish", "N//m", "degC", "%"}) {
     EXPECT_THROW(parseUnit(unit, {}), ExperimentError) << unit;

@@ -54,6 +54,16 @@ TEST(MeasurementFaults, AUnitIsNamedWithItsOutput) {
   EXPECT_EQ(explain(response), "y is 1000 times too large, as mm in the place of m: divide it by 1000");
 }
 
+// Whatever is divided by a large number explains as much as no response.
+TEST(MeasurementFaults, ADriftIsNoUnit) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response.head(kTimes) += 40.0 * makeLayout().times;
+  EXPECT_EQ(explain(response).find("times too large"), std::string::npos) << explain(response);
+  response = makeResponse(1.9, 1.2);
+  response.head(kTimes) *= 100.0;
+  EXPECT_EQ(explain(response), "y is 100 times too large, as cm in the place of m: divide it by 100");
+}
+
 TEST(MeasurementFaults, ASignAnOffsetAndSwappedColumnsAreNamed) {
   VectorXd response = makeResponse(1.0, 1.2);
   response.head(kTimes) *= -1.0;
@@ -61,6 +71,7 @@ TEST(MeasurementFaults, ASignAnOffsetAndSwappedColumnsAreNamed) {
   response = makeResponse(1.0, 1.2);
   response.tail(kTimes).array() += 0.25;
   EXPECT_EQ(explain(response), "theta has an offset of 0.25: subtract it");
+  EXPECT_EQ(explain(-makeResponse(1.0, 1.2)), "all outputs are of the other sign: turn their signs");
   response << makeResponse(1.0, 1.2).tail(kTimes), makeResponse(1.0, 1.2).head(kTimes);
   EXPECT_EQ(explain(response), "the columns of y and theta are swapped");
 }

@@ -122,5 +122,11 @@ TEST(LinearFit, OfDeficientRankHasTheLeastNorm) {
   EXPECT_LT((solveMinimumNorm(a, b) - Eigen::Vector2d(1, 2)).norm(), 1e-14);
 }
 
+// Loops whose coordinates are all held have equations and no unknown.
+TEST(LinearFit, WithoutUnknownsOrEquationsHasTheLeastNorm) {
+  EXPECT_EQ(solveMinimumNorm(MatrixXd(3, 0), VectorXd::Ones(3)).size(), 0);
+  EXPECT_EQ(solveMinimumNorm(MatrixXd(0, 2), VectorXd()), Eigen::Vector2d::Zero());
+}
+
 }  // namespace
 }  // namespace twinmap::linalg

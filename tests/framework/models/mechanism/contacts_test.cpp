@@ -97,6 +97,16 @@ TEST(Backlash, HasThePeriodOfFreeAndPressedParts) {
   EXPECT_NEAR(result(0, 1), 0.5, 1e-7);
 }
 
+TEST(Backlash, HasNoNegativeGap) {
+  ModelSpec model = makeMass("2", 1.0);
+  Backlash<Expression> backlash;
+  backlash.coordinate = name("x");
+  backlash.gap = ex("-0.2");
+  backlash.law = makeLaw("800");
+  model.system.elements.get<Backlash>() = {backlash};
+  EXPECT_NE(getError(model).find("gap = -0.2 must not be negative"), std::string::npos) << getError(model);
+}
+
 TEST(Backlash, BetweenTwoCoordinatesKeepsTheMomentum) {
   ModelSpec model = makeModel(2.0);
   model.system.bodies = {body("motor", "2", kOrigin, kOrigin, joint(JointType::kSlider, {"a"})),
