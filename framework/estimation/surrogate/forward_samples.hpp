@@ -20,8 +20,8 @@ struct ForwardSamples {
   std::vector<Eigen::MatrixXd> slopes{};
 };
 
-/// At how many of n simulations slopes with respect to u variables are learnt from: of all, as long as values
-/// and slopes are at most 2 n in all, or 1200 where that is more; never more than 2000.
+/// At how many of n simulations slopes with respect to u variables are learnt from: of all, as long as there
+/// are at most 2000 values and slopes in all, which keeps a fit of a window below a second.
 Eigen::Index countSlopePoints(Eigen::Index simulations, Eigen::Index unknown);
 
 /// They in units of the noise, in the order in which processes take them, those with slopes first.

@@ -329,11 +329,9 @@ TEST(SimulationGain, IsUnknownOfTooFewSimulationsToBeHalved) {
   EXPECT_EQ(trained.gain.error_ratio.size(), 0);
 }
 
-TEST(SlopePoints, AreAllUntilSlopesDoubleTheRowsOrMakeThem1200) {
-  EXPECT_EQ(countSlopePoints(200, 5), 200);
-  EXPECT_EQ(countSlopePoints(250, 5), 190);
-  EXPECT_EQ(countSlopePoints(800, 4), 200);
-  EXPECT_EQ(countSlopePoints(1000, 5), 200);  // 2000 in all at most
+TEST(SlopePoints, AreAllUntilValuesAndSlopesAreTwoThousand) {
+  EXPECT_EQ(countSlopePoints(250, 5), 250);
+  EXPECT_EQ(countSlopePoints(1000, 5), 200);
   EXPECT_EQ(countSlopePoints(2500, 5), 0);
   EXPECT_EQ(countSlopePoints(100, 0), 100);  // no unknown, no slopes
 }
