@@ -322,7 +322,9 @@ class Incomplete(InferCase):
         self.expect(path, f"3 of 100 samples of y{gap}", f"3 of 100 samples of theta{gap}")
 
     def test_half_of_the_rate(self):
-        self.expect(self.write_rows("slow.csv", np.s_[1::2]), "50 of 100 samples of y", "50 of 100 samples of theta")
+        sparse = "; its samples are 0.1 s apart, too far to be interpolated"
+        remarks = [f"50 of 100 samples of {name}{sparse}" for name in ("y", "theta")]
+        self.expect(self.write_rows("slow.csv", np.s_[1::2]), *remarks)
 
     def test_an_end_that_is_too_early(self):
         gap = ", the longest gap 51 at 2.5 s to 5 s"
