@@ -94,7 +94,7 @@ void describe(Fields& f, ExperimentSpec& s) {
   f.optional("inverse_map", s.inverse_map, "from features to parameters");
   f.optional("evaluation", s.evaluation, "what is found out about the map besides its errors");
   f.optional("refine", s.refine,
-             "whether answers are refined on the simulator; automatic: where that is cheap");
+             "whether estimates are refined on the simulator; automatic: where that is cheap");
   f.optional("trust", s.trust, "how inferences from measurements are judged");
   f.optional("gates", s.gates, "acceptance criteria on the metrics; the report says which passed");
   f.optional("measurement", s.measurement, "how files of measurements are read");

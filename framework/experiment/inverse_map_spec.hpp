@@ -146,7 +146,7 @@ struct EnumNames<NetworkSamples> {
 
 inline constexpr NumberRule kMixtureComponents{2.0, 4.0, true, "must be a whole number from 2 to 4"};
 
-/// The distribution that a network's answers have.
+/// The distribution that a network's estimates have.
 enum class NetworkHead { kGaussian, kMixture };
 
 template <>
@@ -268,14 +268,14 @@ struct InverseMapSpec {
 template <class Fields>
 void describe(Fields& f, InverseMapSpec& s) {
   f.scalarIsKey();
-  f.oneOf(
-      "must be one of",
-      choice<AutomaticMapSpec>("automatic", s.kind, "a surrogate where it can be trained, else gp"),
-      choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
-      choice<SurrogateMapSpec>("surrogate", s.kind,
-                               "processes from parameters to features, inverted for each measurement"),
-      choice<NetworkMapSpec>("network", s.kind, "a neural network, the fastest to infer"),
-      choice<NoMapSpec>("none", s.kind, "no map: the posterior on the simulator answers each measurement"));
+  f.oneOf("must be one of",
+          choice<AutomaticMapSpec>("automatic", s.kind, "a surrogate where it can be trained, else gp"),
+          choice<GpMapSpec>("gp", s.kind, "one Gaussian process per parameter"),
+          choice<SurrogateMapSpec>("surrogate", s.kind,
+                                   "processes from parameters to features, inverted for each measurement"),
+          choice<NetworkMapSpec>("network", s.kind, "a neural network, the fastest to infer"),
+          choice<NoMapSpec>("none", s.kind,
+                            "no map: each measurement is estimated by its posterior on the simulator"));
 }
 
 }  // namespace twinmap

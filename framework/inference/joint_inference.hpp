@@ -97,7 +97,7 @@ class JointInferrer {
   SimulatorPosteriorOptions options_, joint_options_;
 };
 
-/// A table for people: whether they agree, the joint estimate, each recording's.
+/// A human-readable table: whether they agree, the joint estimate, each recording's.
 std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters);
 
 /// CSV: rows of each recording, then of the joint estimate (source "joint"), in the columns of

@@ -4,7 +4,7 @@
 
 namespace twinmap::python {
 
-// What each file adds to the module twinmap._twinmap, which twinmap/*.py make a package for people of.
+// What each file adds to the module twinmap._twinmap, which twinmap/*.py wrap as a package.
 void bindErrors(pybind11::module_& module);
 void bindQuantity(pybind11::module_& module);
 void bindExperiment(pybind11::module_& module);

@@ -52,8 +52,8 @@ std::string makeChainsCsv(const SampledChains& sampled);
 /// hyperparameters.csv: parameter, hyperparameter, value, lower, upper; of the start that was kept.
 std::string makeHyperparametersCsv(const RunSummary& run);
 
-/// The paper's table for people: Markdown (columns aligned, so that it reads well as plain text) and LaTeX
-/// (booktabs). Bias, sd, coverage and ratio carry their standard error in parentheses
+/// The paper's table, human-readable: Markdown (columns aligned, so that it reads well as plain text) and
+/// LaTeX (booktabs). Bias, sd, coverage and ratio carry their standard error in parentheses
 /// (number_with_error.hpp); the information limit and the ratio to it have columns where the limit is known.
 /// With them the Markdown table of the two-beam case fills 120 columns.
 std::string makeMarkdownTable(const RunSummary& run);

@@ -28,8 +28,8 @@ class TriangularScratch {
 };
 
 /// Factorises the symmetric positive definite a = L L' in place; reads and writes the lower triangle (what
-/// lies above the diagonal is overwritten with finite rubbish). False if a pivot is not positive and finite:
-/// a is then destroyed. Cost: n^3 / 3 flops.
+/// lies above the diagonal is overwritten with unspecified finite values). False if a pivot is not positive
+/// and finite: a is then destroyed. Cost: n^3 / 3 flops.
 [[nodiscard]] bool factorizeCholesky(View a, TriangularScratch& scratch);
 
 /// b = b L^-T for lower triangular L (n x n) and b (m x n). Cost: m n^2 flops.

@@ -7,7 +7,7 @@ namespace twinmap {
 /// The shortest decimal text that reads back as the same number; "nan", "inf".
 std::string toText(double value);
 
-/// Rounded to `digits` significant digits, for people: "0.9374", "1.3e-05".
+/// Rounded to `digits` significant digits, human-readable: "0.9374", "1.3e-05".
 std::string toShortText(double value, int digits);
 
 /// The number, if `text` is a plain decimal literal ("3.3", "-1e-3"); inf and nan are not.

@@ -79,7 +79,7 @@ struct StatusArguments {
 
 struct CompareArguments {
   std::string folder_a, folder_b;
-  bool csv = false, json = false;  ///< at most one; neither: a table for people
+  bool csv = false, json = false;  ///< at most one; neither: a human-readable table
 };
 
 struct NoiseArguments {
@@ -113,7 +113,7 @@ struct InferArguments {
   std::vector<std::string> trials;  ///< "NAME=FILE": recordings of trials, inferred together
   bool joint = false;               ///< all files and starts together
   std::optional<double> windows;    ///< s: windows of each file, one after another, inferred together
-  bool json = false, csv = false;   ///< at most one; neither: a table for people
+  bool json = false, csv = false;   ///< at most one; neither: a human-readable table
   bool follow = false;              ///< measurements from the standard input, JSON lines out
   std::optional<bool> refine;       ///< none: as the experiment says
   int posterior_draws = 0;          ///< of each measurement's posterior; 0: none
@@ -130,7 +130,7 @@ struct DiagnoseArguments {
   std::vector<double> starts;         ///< times in each file that are 0 of the model; empty: the experiment's
   std::vector<std::string> accepted;  ///< terms to take; empty: those that are found
   std::string out;                    ///< file for the corrected experiment; "": none
-  bool json = false, csv = false;     ///< at most one; neither: a table for people
+  bool json = false, csv = false;     ///< at most one; neither: a human-readable table
 };
 
 struct ValidateArguments {

@@ -46,7 +46,7 @@ void describe(Fields& f, CandidateSpec& s) {
   f.required("force", s.force, "what the coefficient multiplies, as -tanh(x_dot/0.01)");
   f.optional("unit", s.unit, "coherent SI unit of the coefficient");
   f.optional("scale", s.scale, "a number in the force that is fitted as well");
-  f.optional("description", s.description, "for people");
+  f.optional("description", s.description, "human-readable");
 }
 
 }  // namespace twinmap

@@ -21,7 +21,7 @@ void describe(Fields& f, DerivedSpec& s) {
   f.scalarIsValueOf("value");
   f.required("value", s.value, "expression of parameters, constants and quantities derived before");
   f.optional("unit", s.unit, "coherent SI unit, such as kg m; checked against the expression");
-  f.optional("description", s.description, "for people");
+  f.optional("description", s.description, "human-readable");
 }
 
 }  // namespace twinmap

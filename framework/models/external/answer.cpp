@@ -11,7 +11,7 @@
 namespace twinmap {
 namespace {
 
-/// The beginning of a line, for people.
+/// The beginning of a line, human-readable.
 std::string shorten(const std::string& line) {
   constexpr std::size_t kMax = 80;
   return line.size() <= kMax ? line : line.substr(0, kMax) + "...";

@@ -15,7 +15,7 @@ class ProtocolError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The answer to the first line, for people.
+/// The answer to the first line, human-readable.
 std::string writeHelloAnswer();
 
 /// Checks a program's answer to the first line. Throws ProtocolError for another version of the protocol.

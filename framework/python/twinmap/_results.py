@@ -79,7 +79,7 @@ class Results:
         return self.folder / "report.html"
 
     def to_markdown(self) -> str:
-        """The main table, for people."""
+        """The main table, human-readable."""
         return (self.folder / "table.md").read_text()
 
     def _repr_html_(self) -> Optional[str]:

@@ -18,7 +18,7 @@ std::string makeResidualsCsv(const Replay& replay);
 /// The fits of each output by the updated and by the nominal model; the first row names the columns.
 std::vector<std::vector<std::string>> listFits(const Replay& replay);
 
-/// The same for people.
+/// The same, human-readable.
 std::string makeFitTable(const Replay& replay);
 
 /// Writes replay.csv, residuals.csv, fit.csv, inference.json and report.html, each whole or not at all; makes

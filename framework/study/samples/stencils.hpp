@@ -12,7 +12,7 @@
 
 namespace twinmap {
 
-/// The stage that simulates stencils (StencilSimulator), for people.
+/// The stage that simulates stencils (StencilSimulator), human-readable.
 inline constexpr const char* kStencilStage = "simulate sensitivities";
 
 /// Of how many training samples a selection by Fisher information looks at the sensitivities.

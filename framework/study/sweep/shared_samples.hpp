@@ -34,7 +34,7 @@ SharedSamples openSharedStencils(const ModelGroup& group, const Eigen::MatrixXd&
 /// A stage of a sweep that simulates.
 struct SharedStage {
   double memory = 0.0;            ///< bytes of responses that may be held at a time
-  std::string name = "simulate";  ///< for people
+  std::string name = "simulate";  ///< human-readable
   int simulations = 1;            ///< behind each sample, as progress counts them
 };
 

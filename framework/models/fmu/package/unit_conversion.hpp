@@ -20,7 +20,7 @@ struct VariableUnits {
 VariableUnits calcVariableUnits(const ModelDescription& description, const Variable& variable,
                                 const std::string& unit, const SourceLocation& where);
 
-/// As a unit's name for people: "N/m (unknown)" is "N/m".
+/// A unit's human-readable name: "N/m (unknown)" is "N/m".
 bool isKnownUnit(const ModelDescription& description, const std::string& unit);
 
 }  // namespace twinmap::fmi
