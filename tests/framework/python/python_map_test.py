@@ -174,7 +174,7 @@ class Inferring(TwoBeams):
         frame = self.measurement.to_frame()
         for wrong, text in [
             (frame.drop(columns="theta"), "no column 'theta'"),
-            (frame.assign(y=np.nan), "no sample at any needed time"),
+            (frame.assign(y=np.nan), "has no number in any row"),
             (frame.assign(y=np.inf), "finite"),
             ({"t": [[0.0]], "y": [1.0], "theta": [1.0]}, "one dimension"),
             (np.zeros(3), "200 finite numbers"),
