@@ -83,15 +83,14 @@ class RidgeWalk {
   const std::vector<RidgePiece>& getPieces() const { return pieces_; }
 
  private:
+  static constexpr double kSettled = 0.1;  // standard deviations across: adds 1 % to chi-square of a degree
+
   /// A Gauss-Newton step across the ridge.
   struct AcrossStep {
     VectorXd end;   ///< where it leads to
     double length;  ///< standard deviations
 
-    bool isSettled() const {
-      constexpr double kSettled = 0.1;  // adds 1 % to chi-square of a degree
-      return length < kSettled;
-    }
+    bool isSettled() const { return length < kSettled; }
   };
 
   /// All pieces of a ridge that is straight between its ends, as that of a sum is: the middle, both ends and
@@ -140,21 +139,15 @@ class RidgeWalk {
 
   /// Whether the ridge passes through `end` in the same direction with about the same weight.
   bool continuesStraight(const RidgePiece& middle, const LocalMisfit& end) const {
-    constexpr double kSettled = 0.1;  // standard deviations across, as that of a step
-    constexpr double kAlike = 0.2;    // log weight: linear between, it is wrong by some hundredths at most
-    const MatrixXd whole = end.calcInformationWithin();
-    const MatrixXd information = across_.transpose() * whole * across_;
-    const linalg::Cholesky factor = linalg::calcCholesky(information);
-    if (!factor.positive_definite || !calcStep(end).isSettled()) {
+    constexpr double kAlike = 0.2;  // log weight: linear between, it is wrong by some hundredths at most
+    const Section section = calcSection(end);
+    if (!section.factor.positive_definite || !calcStep(end).isSettled()) {
       return false;
     }
-    const VectorXd coupling = across_.transpose() * whole * along_;
-    const VectorXd turned =
-        across_.transpose() * (middle.tangent - along_) + linalg::solveCholesky(factor.lower, coupling);
+    const VectorXd turned = across_.transpose() * (middle.tangent - section.tangent);
     const double way = (end.at - middle.local.at).dot(along_);
-    const double log_weight = -0.5 * end.calcMisfitWithin() - factor.lower.diagonal().array().log().sum();
-    return std::abs(way) * std::sqrt(turned.dot(information * turned)) < kSettled &&
-           std::abs(log_weight - middle.log_height) < kAlike;
+    return std::abs(way) * std::sqrt(turned.dot(section.information * turned)) < kSettled &&
+           std::abs(section.log_height - middle.log_height) < kAlike;
   }
 
   /// Piece by piece from the first, several at a time, all on the tangent of the last: samples that are
@@ -233,19 +226,31 @@ class RidgeWalk {
     return settled;
   }
 
-  /// Whether any of the piece there is within the box.
-  bool add(const LocalMisfit& local) {
+  /// The ridge's section at a point.
+  struct Section {
+    MatrixXd information;  ///< across
+    linalg::Cholesky factor;
+    VectorXd tangent;
+    double log_height;
+  };
+
+  Section calcSection(const LocalMisfit& local) const {
     const MatrixXd whole = local.calcInformationWithin();
     const MatrixXd information = across_.transpose() * whole * across_;
     const linalg::Cholesky factor = linalg::calcCholesky(information);
     const VectorXd coupling = across_.transpose() * whole * along_;
-    RidgePiece piece{local, along_ - across_ * linalg::solveCholesky(factor.lower, coupling),
-                     {},    0.0,
-                     0.0,   -0.5 * local.calcMisfitWithin() - factor.lower.diagonal().array().log().sum(),
-                     0.0};
-    piece.covariance =
-        across_ * linalg::solveCholesky(factor.lower, MatrixXd::Identity(coupling.size(), coupling.size())) *
+    return {information, factor, along_ - across_ * linalg::solveCholesky(factor.lower, coupling),
+            -0.5 * local.calcMisfitWithin() - factor.lower.diagonal().array().log().sum()};
+  }
+
+  /// Whether any of the piece there is within the box.
+  bool add(const LocalMisfit& local) {
+    const Section section = calcSection(local);
+    const Index count = across_.cols();
+    const MatrixXd covariance =
+        across_ * linalg::solveCholesky(section.factor.lower, MatrixXd::Identity(count, count)) *
         across_.transpose();
+    RidgePiece piece{local, section.tangent, covariance, 0.0, 0.0, section.log_height, 0.0};
     if (!cutAtBounds(piece)) {
       return false;
     }

@@ -26,8 +26,8 @@ bool hasFlatDirection(const LocalMisfit& minimum);
 /// likelihood is. Its weight is exp(-misfit / 2) over the square root of the determinant of the
 /// information across: Laplace's approximation across, quadrature along, within the box and its prior.
 /// Nothing where there is no flat direction or more than one, and where a simulation fails or the steps do
-/// not converge. Cost: four linearisations of a straight ridge
-/// (a + b = const); of others two or three a piece, some 16 pieces, eight at a time.
+/// not converge. Cost: four linearisations of a straight ridge (a + b = const), one batch; of others two or
+/// three a piece, some 16 pieces, eight at a time.
 std::optional<RidgeTrace> traceRidge(Misfit& misfit, const LocalMisfit& minimum);
 
 }  // namespace twinmap
