@@ -1,7 +1,5 @@
 #include "framework/inference/direct_inference.hpp"
 
-#include <limits>
-
 #include "framework/base/text/source_location.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
@@ -46,11 +44,8 @@ std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, co
     return "";
   }
   const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
-    const Eigen::VectorXd features = simulator.getExtractor().extract(corrected);
-    const auto there = static_cast<double>(features.array().isFinite().count());
-    const auto all = static_cast<double>(found.available.size());
-    return 2.0 * there > all ? simulator.findLeastChiSquare(features, known) * all / there
-                             : std::numeric_limits<double>::infinity();
+    return simulator.findLeastChiSquare(simulator.getExtractor().extract(corrected), known,
+                                        static_cast<Eigen::Index>(found.available.size()));
   };
   return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -218,9 +219,17 @@ PosteriorEstimate SimulatorRefiner::makeFailed(const VectorXd& features, const V
   return makeEstimate(makeTrial(features, known), std::move(posterior));
 }
 
-double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const VectorXd& known) const {
-  return twinmap::findLeastChiSquare(
-      {getUnknown(), model_.priors, {makeTrial(features, known)}, static_cast<Index>(getUnknown().size())});
+double SimulatorRefiner::findLeastChiSquare(const VectorXd& features, const VectorXd& known,
+                                            Index all) const {
+  const auto there = static_cast<double>(features.array().isFinite().count()), of = static_cast<double>(all);
+  if (2.0 * there <= of) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return of / there *
+         twinmap::findLeastChiSquare({getUnknown(),
+                                      model_.priors,
+                                      {makeTrial(features, known)},
+                                      static_cast<Index>(getUnknown().size())});
 }
 
 PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,

@@ -82,8 +82,10 @@ class SimulatorRefiner {
   PosteriorEstimate makeFailed(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                                const std::string& reason) const;
 
-  /// The least chi-square of few searches (twinmap::findLeastChiSquare), to compare gross misfits.
-  double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known) const;
+  /// The least chi-square of few searches (twinmap::findLeastChiSquare), to compare gross misfits; in
+  /// proportion where only some of `all` features are there, infinite where half are missing.
+  double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                            Eigen::Index all) const;
 
   /// The posterior (samplePosterior), searched from all that is known of the measurement too: the estimator's
   /// basins, the training simulations of the most similar features, the refined estimate; and what follows

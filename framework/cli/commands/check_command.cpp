@@ -6,6 +6,7 @@
 
 #include "framework/cli/commands/commands.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/experiment/check/unused_parameters.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/expression/jumps.hpp"
 #include "framework/models/make_simulator.hpp"
@@ -65,14 +66,17 @@ void check(const CheckArguments& arguments) {
     }
     machine = machine.empty() ? simulator->describeModel() : machine;
   }
+  for (const std::string& unused : listUnusedParameters(tree)) {
+    std::cout << "# " << unused << '\n';
+  }
+  for (const std::string& jump : jumps) {
+    std::cout << "# steps become small: " << jump << '\n';
+  }
   for (const std::string& engine : engines) {
     std::cout << "# solver: " << engine << '\n';
   }
   for (const std::string& line : machine) {
     std::cout << "#   " << line << '\n';
-  }
-  for (const std::string& jump : jumps) {
-    std::cout << "# steps become small: " << jump << '\n';
   }
   if (readExperiment(tree).inverse_map.isNone()) {
     std::cout << "# no inverse map: measurements are inferred by their posterior on the simulator\n";

@@ -84,7 +84,9 @@ class Recording {
 
   ClockedRows sort(const Table& table, const TimeBase& base, const std::string& column) {
     const Index rows = getColumn(table, column).values.size();
-    RowOrder order = sortRows(readUnorderedTimes(table, base, rows));
+    const VectorXd times = readUnorderedTimes(table, base, rows);
+    requireClock(table, base, times);
+    RowOrder order = sortRows(times);
     for (std::string& remark : order.remarks) {
       if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) {
         remarks_.push_back(std::move(remark));

@@ -1,5 +1,7 @@
 #include "framework/data/measurement/time_series.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -77,6 +79,27 @@ VectorXd readTimes(const Table& table, const TimeBase& base, Index rows) {
     requireIncreasing(table, getTimeColumn(table, base), times);
   }
   return times;
+}
+
+void requireClock(const Table& table, const TimeBase& base, const VectorXd& times) {
+  constexpr Index kTenth = 10;  // rows out of order are single packets
+  const Index steps = times.size() - 1;
+  const auto countBack = [](const VectorXd& values) {
+    const Index count = values.size() - 1;
+    return (values.tail(count).array() <= values.head(count).array()).count();
+  };
+  if (base.sample_rate || steps < kTenth || countBack(times) * kTenth < steps) {
+    return;
+  }
+  const std::string& clock = getTimeColumn(table, base).name;
+  for (const Column& column : table.columns) {
+    if (column.values.size() == times.size() && column.values.allFinite() && countBack(column.values) == 0) {
+      throw MeasurementError(fmt::format(
+          "{}: time '{}' goes back or stands in {} of {} rows, while '{}' rises in every one: are the two "
+          "names swapped?",
+          table.source, clock, countBack(times), times.size(), column.name));
+    }
+  }
 }
 
 VectorXd readValues(const Table& table, const ColumnSpec& wanted, const std::string& unit, Index first,

@@ -26,6 +26,10 @@ Eigen::VectorXd readTimes(const Table& table, const TimeBase& base, Eigen::Index
 /// The same, whatever their order, NaN where a row has no time.
 Eigen::VectorXd readUnorderedTimes(const Table& table, const TimeBase& base, Eigen::Index rows);
 
+/// Throws MeasurementError where the times go back in every tenth row or more, while another column rises in
+/// every one, as where two names are swapped.
+void requireClock(const Table& table, const TimeBase& base, const Eigen::VectorXd& times);
+
 /// Rows `first` .. `first` + `count` - 1 of a column, converted to `unit`; "" takes the numbers as they
 /// stand. The column's unit is the wanted one if that is given, else the one that the table states, else
 /// `unit`. Throws MeasurementError for a missing column and a unit that does not convert.

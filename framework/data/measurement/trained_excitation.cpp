@@ -79,7 +79,9 @@ SampledSignal takeTrained(const TableSpec& table, double duration) {
 SampledSignal readMeasured(const Table& table, const ColumnSpec& column, const MeasurementSpec& spec,
                            const std::string& unit, double start) {
   const Column& found = getColumn(table, column.name);
-  const VectorXd times = readUnorderedTimes(table, makeTimeBase(spec, start), found.values.size());
+  const TimeBase base = makeTimeBase(spec, start);
+  const VectorXd times = readUnorderedTimes(table, base, found.values.size());
+  requireClock(table, base, times);
   requireLength(table, found, times.size());
   const VectorXd values = readValues(table, column, unit, 0, times.size());
   std::vector<Index> rows = sortRows(times).rows;

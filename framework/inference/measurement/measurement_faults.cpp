@@ -13,6 +13,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
+constexpr Index kFewestEqual = 4;  // of numbers with noise no two are the same
+
 /// `example` is given where the output's unit contains `unit`.
 struct UnitFactor {
   double factor;
@@ -35,29 +37,29 @@ std::string describe(const UnitFactor& factor, const std::string& output, const 
   return fmt::format("{} is {}{}: {}", output, factor.said, applies ? factor.example : "", factor.remedy);
 }
 
-/// The measurement without an offset of some rows.
-VectorXd subtract(VectorXd measured, Index first, Index count, double offset) {
-  measured.segment(first, count).array() -= offset;
+/// The measurement without what is added to some rows: so much of `shape`.
+VectorXd subtract(VectorXd measured, Index first, const VectorXd& shape, double amount) {
+  measured.segment(first, shape.size()) -= amount * shape;
   return measured;
 }
 
-/// The offset of some rows that leaves the least misfit, by parabolas through three of them, from `offset`
-/// on: chi-square is quadratic in it where the features are linear, and nearly so elsewhere.
-double findOffset(const VectorXd& measured, Index first, Index count, double offset, double step,
+/// The amount of a shape in some rows that leaves the least misfit, by parabolas through three of them, from
+/// `amount` on: chi-square is quadratic in it where the features are linear, and nearly so elsewhere.
+double findAmount(const VectorXd& measured, Index first, const VectorXd& shape, double amount, double step,
                   const MisfitOfResponse& calcMisfit) {
   constexpr int kParabolas = 3;
   for (int i = 0; i < kParabolas && step > 0.0; ++i) {
-    const double below = calcMisfit(subtract(measured, first, count, offset - step));
-    const double at = calcMisfit(subtract(measured, first, count, offset));
-    const double above = calcMisfit(subtract(measured, first, count, offset + step));
+    const double below = calcMisfit(subtract(measured, first, shape, amount - step));
+    const double at = calcMisfit(subtract(measured, first, shape, amount));
+    const double above = calcMisfit(subtract(measured, first, shape, amount + step));
     const double bend = below - 2.0 * at + above;
     if (!(bend > 0.0)) {
       break;
     }
-    offset += 0.5 * step * (below - above) / bend;
+    amount += 0.5 * step * (below - above) / bend;
     step *= 0.1;
   }
-  return offset;
+  return amount;
 }
 
 /// The best explanation so far.
@@ -124,9 +126,10 @@ void trySpikes(const VectorXd& measured, const ResponseLayout& layout, Index out
     if (height == 0.0) {
       return;
     }
+    const VectorXd one = VectorXd::Ones(1);
     const double offset =
-        findOffset(corrected, first + sample, 1, height, kStep * std::abs(height), calcMisfit);
-    corrected = subtract(corrected, first + sample, 1, offset);
+        findAmount(corrected, first + sample, one, height, kStep * std::abs(height), calcMisfit);
+    corrected = subtract(corrected, first + sample, one, offset);
     places += fmt::format("{}{:.4g} s", places.empty() ? "" : ", ", layout.times[sample]);
     if (search.tryOut(corrected, fmt::format("{} has {} at {}: repair the recording, or empty the cell{}",
                                              layout.output_names[static_cast<std::size_t>(output)],
@@ -139,20 +142,74 @@ void trySpikes(const VectorXd& measured, const ResponseLayout& layout, Index out
 /// The response without the samples of an output that stand at its largest or its least value, as a sensor
 /// that clips shows it; false where neither has four of them.
 bool dropClipped(VectorXd& response, Index first, Index count, Index& dropped) {
-  constexpr Index kFewest = 4;  // of numbers with noise no two are the same
   const VectorXd values = response.segment(first, count);
   const VectorXd finite =
       values.array().isFinite().select(values, values.array().isFinite().select(values, 0.0).mean());
   dropped = 0;
   for (const double limit : {finite.maxCoeff(), finite.minCoeff()}) {
     const auto at_limit = values.array() == limit;
-    if (at_limit.count() >= kFewest) {
+    if (at_limit.count() >= kFewestEqual) {
       dropped += at_limit.count();
       response.segment(first, count) =
           at_limit.select(std::numeric_limits<double>::quiet_NaN(), response.segment(first, count));
     }
   }
   return dropped > 0;
+}
+
+/// The longest stretch of an output in which it holds one value.
+struct Stretch {
+  Index first = 0, count = 0;
+};
+
+Stretch findHeld(const Eigen::Ref<const VectorXd>& samples) {
+  Stretch longest, now;
+  for (Index i = 0; i < samples.size(); ++i) {
+    now = i > 0 && samples[i] == samples[i - 1] ? Stretch{now.first, now.count + 1} : Stretch{i, 1};
+    longest = now.count > longest.count ? now : longest;
+  }
+  return longest;
+}
+
+/// Samples at the largest or the least value, and those of the longest stretch that holds another.
+void tryStandstill(const VectorXd& measured, const ResponseLayout& layout, Index output,
+                   const MisfitOfResponse& calcMisfit, Search& search) {
+  const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
+  const Index times = layout.times.size(), first = layout.getRow(output, 0);
+  VectorXd unclipped = measured;
+  if (Index dropped = 0; dropClipped(unclipped, first, times, dropped)) {
+    search.tryOut(unclipped, fmt::format("{} is clipped in {} samples: state what it can show, "
+                                         "measurement.range",
+                                         name, dropped));
+  }
+  const Stretch held = findHeld(measured.segment(first, times));
+  if (held.count >= kFewestEqual) {
+    VectorXd without = measured;
+    without.segment(first + held.first, held.count).setConstant(std::numeric_limits<double>::quiet_NaN());
+    search.tryOut(without, fmt::format("{} holds {:.4g} from {:.4g} s to {:.4g} s: empty these cells", name,
+                                       measured[first + held.first], layout.times[held.first],
+                                       layout.times[held.first + held.count - 1]));
+  }
+}
+
+/// An offset, and one that grows with time.
+void tryDrift(const VectorXd& measured, const ResponseLayout& layout, Index output,
+              const MisfitOfResponse& calcMisfit, Search& search) {
+  const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
+  const std::string& unit = layout.output_units[static_cast<std::size_t>(output)];
+  const Index times = layout.times.size(), first = layout.getRow(output, 0);
+  const auto values = measured.segment(first, times).array();
+  const double range = (values - values.mean()).abs().maxCoeff();
+  const VectorXd ones = VectorXd::Ones(times);
+  const double offset = findAmount(measured, first, ones, 0.0, range, calcMisfit);
+  search.tryOut(subtract(measured, first, ones, offset),
+                fmt::format("{} has an offset of {:.4g}: subtract it", name, offset));
+  const double length = layout.times[times - 1] - layout.times[0];
+  const VectorXd ramp = (layout.times.array() - layout.times[0]) / length;
+  const double growth = findAmount(measured, first, ramp, 0.0, range, calcMisfit);
+  search.tryOut(subtract(measured, first, ramp, growth),
+                fmt::format("{} drifts by {:.4g}{} a second: subtract the drift", name, growth / length,
+                            unit.empty() ? "" : " " + unit));
 }
 
 /// Factors between units. One that makes an output small explains it only where a zero does not do as well.
@@ -193,17 +250,8 @@ std::string explainByFault(const VectorXd& measured, const ResponseLayout& layou
     const Index first = layout.getRow(output, 0);
     tryUnits(measured, layout, output, calcMisfit, search);
     trySpikes(measured, layout, output, calcMisfit, search);
-    VectorXd unclipped = measured;
-    if (Index dropped = 0; dropClipped(unclipped, first, times, dropped)) {
-      search.tryOut(unclipped, fmt::format("{} is clipped in {} samples: state what it can show, "
-                                           "measurement.range",
-                                           name, dropped));
-    }
-    const auto values = measured.segment(first, times).array();
-    const double offset =
-        findOffset(measured, first, times, 0.0, (values - values.mean()).abs().maxCoeff(), calcMisfit);
-    search.tryOut(subtract(measured, first, times, offset),
-                  fmt::format("{} has an offset of {:.4g}: subtract it", name, offset));
+    tryStandstill(measured, layout, output, calcMisfit, search);
+    tryDrift(measured, layout, output, calcMisfit, search);
     for (Index other = 0; other < output; ++other) {
       VectorXd corrected = measured;
       const Index second = layout.getRow(other, 0);

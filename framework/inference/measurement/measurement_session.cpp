@@ -96,11 +96,15 @@ std::string MeasurementSession::findFault(const Eigen::VectorXd& response, const
   if (!inferred.trust || inferred.trust->statuses.front() != TrustStatus::kModelMismatch) {
     return "";
   }
-  // what the surrogate leaves, also where a refinement has judged the measurement anew
+  // what the surrogate leaves, also where a refinement has judged the measurement anew; without some
+  // samples only the simulator can say
   const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
     const Eigen::VectorXd features = inferrer_.getExtractor().extract(corrected);
-    return features.allFinite() ? inferrer_.infer(features, known, workspace_).trust->chi_square
-                                : std::numeric_limits<double>::infinity();
+    if (features.allFinite()) {
+      return inferrer_.infer(features, known, workspace_).trust->chi_square;
+    }
+    return samplesByNeed() ? simulator_->findLeastChiSquare(features, known, features.size())
+                           : std::numeric_limits<double>::infinity();
   };
   return explainByFault(response, inferrer_.getLayout(), calcMisfit(response), inferred.trust->residuals,
                         calcMisfit);

@@ -62,6 +62,11 @@ def state_wrong_unit(generator, tree):
     return rf"\b{name}\b.*unit|unit.*\bK\b"
 
 
+def leave_unused(generator, tree):
+    tree["parameters"]["spare"] = {"bounds": [1, 2]}
+    return r":\d+:\d+: parameters\.spare: nothing uses this parameter"
+
+
 def turn_bounds(generator, tree):
     name = pick(generator, tree["parameters"])
     tree["parameters"][name]["bounds"].reverse()
@@ -186,6 +191,7 @@ EXPERIMENT_FAULTS = [
     misspell_bounds,
     state_other_unit,
     state_wrong_unit,
+    leave_unused,
     turn_bounds,
     put_nan,
     put_text,

@@ -59,7 +59,7 @@ def measure_nothing(generator, rows):
 
 def swap_with_time(_generator, rows):
     rows[0][0], rows[0][1] = rows[0][1], rows[0][0]
-    return "but some from|single time|left out"
+    return f"time '{rows[0][1]}' goes back .*'{rows[0][0]}' rises in every one: are the two names swapped"
 
 
 def scale_time(_generator, rows):
@@ -91,7 +91,7 @@ def hold_for_a_while(generator, rows):
     i, first = choose_output(generator, rows), generator.randrange(20, 40)
     for row in rows[first : first + 40]:
         row[i] = rows[first][i]
-    return rf"{rows[0][i]}(.*(constant|clipped|not noise)|\()"
+    return rf"{rows[0][i]} (holds .* from|is clipped in)"
 
 
 def double_noise(generator, rows):
@@ -107,7 +107,7 @@ def drift(generator, rows):
     largest = max(abs(row[i]) for row in rows[1:])
     for row in rows[1:]:
         row[i] += largest * row[0]
-    return rf"drift|misfit is .* in {rows[0][i]}\("
+    return rf"{rows[0][i]} drifts by"
 
 
 def write_centimetres(generator, rows):

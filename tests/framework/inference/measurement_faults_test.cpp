@@ -58,7 +58,7 @@ TEST(MeasurementFaults, AUnitIsNamedWithItsOutput) {
 TEST(MeasurementFaults, ADriftIsNoUnit) {
   VectorXd response = makeResponse(1.0, 1.2);
   response.head(kTimes) += 40.0 * makeLayout().times;
-  EXPECT_EQ(explain(response).find("times too large"), std::string::npos) << explain(response);
+  EXPECT_EQ(explain(response), "y drifts by 40 m a second: subtract the drift");
   response = makeResponse(1.9, 1.2);
   response.head(kTimes) *= 100.0;
   EXPECT_EQ(explain(response), "y is 100 times too large, as cm in the place of m: divide it by 100");
@@ -95,6 +95,18 @@ TEST(MeasurementFaults, ASensorThatClipsIsNamed) {
       (response.head(kTimes).array() == 0.6 || response.head(kTimes).array() == -0.9).count();
   EXPECT_EQ(explain(response), "y is clipped in " + std::to_string(clipped) +
                                    " samples: state what it can show, measurement.range");
+}
+
+TEST(MeasurementFaults, ASensorThatHoldsIsNamed) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response.segment(30, 20).setConstant(response[30]);
+  EXPECT_EQ(explain(response), "y holds 0.9696 from 1.818 s to 2.97 s: empty these cells");
+}
+
+TEST(MeasurementFaults, ADriftFromZeroIsNamedWithItsRate) {
+  VectorXd response = makeResponse(1.0, 1.2);
+  response.tail(kTimes) -= 0.5 * makeLayout().times;
+  EXPECT_EQ(explain(response), "theta drifts by -0.5 rad a second: subtract the drift");
 }
 
 TEST(MeasurementFaults, DegreesAreNotNamedOfAMetre) {

@@ -68,6 +68,19 @@ TEST(AvailableResponse, InterpolatesBetweenSamplesOfAFastColumn) {
   EXPECT_EQ(expectRight(readAvailable(record(0.04), {}, makeTwoOutputs(), 0.0), 1e-4), 0);
 }
 
+TEST(AvailableResponse, NamesAColumnWhoseNameIsSwappedWithThatOfTime) {
+  Table table = record(0.1);
+  std::swap(table.columns[0].name, table.columns[2].name);
+  try {
+    readAvailable(table, {}, makeTwoOutputs(), 0.0);
+    ADD_FAILURE() << "accepted";
+  } catch (const MeasurementError& error) {
+    EXPECT_STREQ(error.what(),
+                 "m.csv: time 't' goes back or stands in 16 of 23 rows, while 'b' rises in every one: are "
+                 "the two names swapped?");
+  }
+}
+
 TEST(AvailableResponse, LeavesOutEmptyCellsAndSaysWhich) {
   Table table = record(0.1);
   table.columns[1].values[3] = kNone;

@@ -1,0 +1,68 @@
+#include "framework/experiment/check/unused_parameters.hpp"
+
+#include <fmt/core.h>
+
+#include <cctype>
+#include <set>
+
+namespace twinmap {
+namespace {
+
+bool isOfName(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+void collectWords(const std::string& text, std::set<std::string>& words) {
+  std::string word;
+  for (const char c : text + ' ') {
+    if (isOfName(c)) {
+      word += c;
+    } else if (!word.empty()) {
+      words.insert(std::move(word));
+      word.clear();
+    }
+  }
+}
+
+void collectWords(const YamlNode& node, std::set<std::string>& words) {
+  collectWords(node.scalar, words);
+  for (const YamlNode& item : node.items) {
+    collectWords(item, words);
+  }
+  for (const YamlEntry& entry : node.entries) {
+    if (entry.key != "description" && entry.key != "unit") {
+      collectWords(entry.key, words);
+      collectWords(entry.value, words);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> listUnusedParameters(const YamlNode& experiment) {
+  // what names parameters without using them
+  static const std::set<std::string> kElsewhere = {"name",    "description", "parameters",  "priors",
+                                                   "derived", "design",      "inverse_map", "evaluation",
+                                                   "gates",   "report",      "sweep"};
+  const YamlNode* parameters = experiment.find("parameters");
+  if (parameters == nullptr || experiment.find("system") == nullptr) {
+    return {};
+  }
+  std::set<std::string> words;
+  for (const YamlEntry& section : experiment.entries) {
+    if (kElsewhere.count(section.key) == 0) {
+      collectWords(section.value, words);
+    }
+  }
+  std::vector<std::string> unused;
+  for (const YamlEntry& parameter : parameters->entries) {
+    if (words.count(parameter.key) == 0) {
+      unused.push_back(fmt::format(
+          "{}: nothing uses this parameter: name it in an expression of the system, or take it out",
+          toString(parameter.value.where)));
+    }
+  }
+  return unused;
+}
+
+}  // namespace twinmap
