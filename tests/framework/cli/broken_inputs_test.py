@@ -27,10 +27,13 @@ CART, BEAMS = MACHINES[:2]
 
 
 def find_first_line(result):
-    """Of an error its own; of a status what is left out, else the line that explains it."""
+    """Of an error its own; of a checked experiment the first; of a status what is left out, else the line that explains
+    it."""
     if result.stderr.startswith("twinmap: error"):
         return result.stderr.splitlines()[0]
     lines = result.stdout.splitlines()
+    if lines and lines[0].startswith("# "):
+        return lines[0]
     said = [line for line in lines[1:] if line.startswith("  left out")]
     said += [line for line in lines[1:] if re.match(r"  \w+: ", line)]
     return said[0] if said else (lines or [""])[0] + result.stderr

@@ -77,6 +77,7 @@ class LoopPlanner {
     const MatrixXd columns = calcFreeColumns(closed);
     LoopPlan plan;
     plan.rows = pickIndependent(columns.transpose(), rows_, true);
+    requireMoving(plan.rows.size());
     requireRegular(closed, plan.rows);
     plan.dependent = pickIndependent(calcFreeSlopes(closed)(plan.rows, Eigen::all), released, false);
     plan.dependent_rates = pickIndependent(columns(plan.rows, Eigen::all),
@@ -156,6 +157,17 @@ class LoopPlanner {
     Index worst = 0;
     at.distances.cwiseAbs().maxCoeff(&worst);
     return model_.labels[worst];
+  }
+
+  /// A machine that stands still tells nothing, unless forces in it are measured.
+  void requireMoving(std::size_t kept) const {
+    const auto& outputs = context_.model.outputs;
+    if (kept == coordinates_.size() && prescribed_ == nullptr &&
+        std::none_of(outputs.begin(), outputs.end(),
+                     [](const OutputSpec& output) { return output.reaction || output.force_of; })) {
+      throw SimulationFailure("the constraints hold every coordinate: nothing can move; take one of them out",
+                              model_.labels.back().where);
+    }
   }
 
   /// Conditions that are redundant here must be so a little further along the motion; where a configuration

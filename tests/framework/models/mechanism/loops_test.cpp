@@ -400,6 +400,13 @@ TEST(Loops, MustLeaveSomethingFreeToFollowAMotion) {
   EXPECT_NE(getError(model).find("leave no coordinate free"), std::string::npos) << getError(model);
 }
 
+TEST(Loops, MustLeaveSomethingThatMoves) {
+  ModelSpec model = makeSliderCrank();
+  model.system.constraints.push_back(gear("b", "a", "-0.2"));
+  model.initial.coordinates.clear();
+  EXPECT_NE(getError(model).find("nothing can move"), std::string::npos) << getError(model);
+}
+
 TEST(Motion, RestsWhereItsSignalStarts) {
   // a mass hangs by a spring on a table: at rest m g / k below it, wherever the table is
   ModelSpec model = makeModel(1.0);
