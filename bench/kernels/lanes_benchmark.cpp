@@ -141,8 +141,9 @@ void runClosedForm(const program::PlacedRun* run, const program::PlacedRun* end,
 }
 
 const program::Engine kClosedForm{8, program::kEngine8.isSupported, runClosedForm};
-const StepEngine kClosedFormSteps{kClosedForm,    kSteps8.plan,        kSteps8.prepareStage,
-                                  kSteps8.finish, kSteps8.interpolate, kSteps8.accept};
+const StepEngine kClosedFormSteps{
+    kClosedForm,    kSteps8.times,       kSteps8.plan,           kSteps8.prepareStage,
+    kSteps8.finish, kSteps8.interpolate, kSteps8.interpolateAll, kSteps8.accept};
 #endif
 
 /// Six masses that swing for 5 s, 100 outputs of each angle.

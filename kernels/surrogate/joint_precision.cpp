@@ -1,5 +1,7 @@
 #include "kernels/surrogate/joint_precision.hpp"
 
+#include <utility>
+
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/triangular.hpp"
 
@@ -34,14 +36,25 @@ bool invertSymmetric(const MatrixXd& matrix, MatrixXd& inverse) {
 
 /// What is left where some rows are left out.
 struct JointPrecision::Part {
-  std::vector<Index> rows;
-  MatrixXd covariance, precision;  ///< K_SS and A_SS
-  MatrixXd taken;                  ///< of A_SS, its products with itself: G = L_FF^-1 A_FS; f x k
-  MatrixXd terms;                  ///< H', k x q
+  std::vector<Index> rows, left_out;
+  MatrixXd taken;   ///< of A_SS, its products with itself: G = L_FF^-1 A_FS; f x k
+  MatrixXd factor;  ///< L_FF, lower: of A_FF
+  MatrixXd terms;   ///< H', k x q
   bool definite = true;
 
-  MatrixXd solve(const MatrixXd& right) const {
-    return precision * right - taken.transpose() * (taken * right);
+  /// K_SS^-1 right_S, from A right for all rows: (A right)_S - A_SF A_FF^-1 (A right)_F, whatever right_F is.
+  MatrixXd solve(const MatrixXd& product) const {
+    MatrixXd solved = product(rows, Eigen::all);
+    if (!left_out.empty()) {
+      solved -= taken.transpose() * linalg::solveLower(factor, product(left_out, Eigen::all));
+    }
+    return solved;
+  }
+  /// Zeros for the rows left out.
+  MatrixXd pad(const MatrixXd& kept, Index count) const {
+    MatrixXd padded = MatrixXd::Zero(count, kept.cols());
+    padded(rows, Eigen::all) = kept;
+    return padded;
   }
 };
 
@@ -54,6 +67,9 @@ JointPrecision::JointPrecision(const SharedStructure& structure, const SharedHyp
       covariance_(mirror(calcJointCovariance(structure, hyperparameters, points, slope_points, variables))),
       terms_(calcJointTerms(structure.trend, length_scales_, points, slope_points, variables)) {
   definite_ = invertSymmetric(covariance_, precision_);
+  if (definite_) {
+    solved_terms_ = precision_ * terms_;
+  }
 }
 
 std::vector<Index> JointPrecision::listRows(const std::vector<Index>& points) const {
@@ -79,15 +95,14 @@ JointPrecision::Part JointPrecision::take(const std::vector<Index>& kept) const 
   }
   Part part;
   part.rows = listRows(kept);
-  part.covariance = covariance_(part.rows, part.rows);
-  part.precision = precision_(part.rows, part.rows);
+  part.left_out = listRows(left_out);
   part.terms = terms_(part.rows, Eigen::all);
   part.taken.resize(0, static_cast<Index>(part.rows.size()));
   if (!left_out.empty()) {
-    const std::vector<Index> others = listRows(left_out);
-    const linalg::Cholesky of_others = linalg::calcCholesky(precision_(others, others));
+    linalg::Cholesky of_others = linalg::calcCholesky(precision_(part.left_out, part.left_out));
     part.definite = of_others.positive_definite;
-    part.taken = linalg::solveLower(of_others.lower, precision_(others, part.rows));
+    part.taken = linalg::solveLower(of_others.lower, precision_(part.left_out, part.rows));
+    part.factor = std::move(of_others.lower);
   }
   return part;
 }
@@ -98,7 +113,8 @@ bool JointPrecision::fitPoints(const std::vector<Index>& kept, const MatrixXd& v
     return false;
   }
   const Part part = take(kept);
-  const MatrixXd solved = part.solve(part.terms);
+  const Index count = precision_.rows();
+  const MatrixXd solved = part.solve(solved_terms_);
   const linalg::Cholesky of_terms = linalg::calcCholesky(part.terms.transpose() * solved);
   if (!part.definite || !of_terms.positive_definite) {
     return false;
@@ -108,19 +124,24 @@ bool JointPrecision::fitPoints(const std::vector<Index>& kept, const MatrixXd& v
   fit.weights.setZero(known.rows(), values.cols());
   const auto add = [&](const MatrixXd& rest) {
     const MatrixXd step = linalg::solveCholesky(of_terms.lower, solved.transpose() * rest);
-    fit.weights += part.solve(rest) - solved * step;
+    fit.weights += part.solve(precision_ * part.pad(rest, count)) - solved * step;
     fit.coefficients += step;
   };
   add(known);
-  add(known - part.covariance * fit.weights - part.terms * fit.coefficients);
+  const MatrixXd covered = covariance_ * part.pad(fit.weights, count);
+  add(known - covered(part.rows, Eigen::all) - part.terms * fit.coefficients);
   fit.residual.resize(values.rows(), values.cols());
   fit.variance.resize(values.rows());
   const MatrixXd of_trend = linalg::solveLower(of_terms.lower, solved.transpose());
   for (Index i = 0; i < values.rows(); ++i) {
     const std::vector<Index> rows = listJointRows(i, values.rows(), slopes);
     const MatrixXd taken = part.taken(Eigen::all, rows), trend = of_trend(Eigen::all, rows);
-    leaveOut(i, rows, part.precision(rows, rows) - taken.transpose() * taken - trend.transpose() * trend,
-             fit);
+    std::vector<Index> among_all;
+    for (const Index row : rows) {
+      among_all.push_back(part.rows[static_cast<std::size_t>(row)]);
+    }
+    leaveOut(i, rows,
+             precision_(among_all, among_all) - taken.transpose() * taken - trend.transpose() * trend, fit);
   }
   return fit.variance.minCoeff() > 0.0 && fit.weights.allFinite() && fit.residual.allFinite();
 }

@@ -22,8 +22,8 @@ class JointPrecision {
   bool isDefinite() const { return definite_; }
 
   /// As fitJointly() for the points `kept` alone (rising). `values` and `slopes` are theirs: the slopes of
-  /// those below m. False where it cannot. Cost, with k rows kept and f left out: 4 k^2 (q + r) + f^2 (k + f
-  /// / 3) flops.
+  /// those below m. False where it cannot. Cost, with k rows kept and f left out: 6 (n + u m)^2 r + 2 f k (q
+  /// + r) + f^2 (k + f / 3) flops.
   bool fitPoints(const std::vector<Eigen::Index>& kept, const Eigen::MatrixXd& values,
                  const SlopeData& slopes, JointFit& fit) const;
 
@@ -35,7 +35,7 @@ class JointPrecision {
   Eigen::VectorXd length_scales_;
   Eigen::Index points_, slope_points_, variables_;
   Eigen::MatrixXd covariance_, precision_;  // K and A
-  Eigen::MatrixXd terms_;                   // H', n + u m x q
+  Eigen::MatrixXd terms_, solved_terms_;    // H', n + u m x q, and A H'
   bool definite_ = false;
 };
 

@@ -184,7 +184,8 @@ std::vector<WindowFit> refit(const ForwardChoices& similar, const WhitenedSample
                              const TrainingControl& control) {
   std::vector<WindowFit> windows(similar.windows.size());
   runTasks(control.threads, windows.size(), [&](std::size_t w) {
-    windows[w] = refitWindow(similar.windows[w], similar.processes[w], whitened, control.stop);
+    windows[w] = refitWindow(similar.windows[w], similar.processes[w], similar.slope_shares[w], whitened,
+                             control.stop);
   });
   return windows;
 }
@@ -209,6 +210,7 @@ ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& simil
   gp::throwIfStopped(control.stop);
   for (const WindowFit& window : windows.front()) {
     fit.choices.processes.push_back(window.choice);
+    fit.choices.slope_shares.push_back(window.slope_share);
   }
   assemble(windows.front(), chooseScores(windows.front(), samples.points.cols()), noise, fit.surrogate);
   for (std::size_t fold = 0; fold + 1 < windows.size(); ++fold) {

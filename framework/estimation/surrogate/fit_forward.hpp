@@ -15,6 +15,7 @@ namespace twinmap {
 struct ForwardChoices {
   std::vector<FeatureWindow> windows;
   std::vector<gp::SharedChoice> processes;
+  std::vector<double> slope_shares;  ///< WindowFit::slope_share
 };
 
 /// A forward surrogate, and what was chosen for it.

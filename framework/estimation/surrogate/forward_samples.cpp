@@ -30,9 +30,24 @@ std::vector<Index> orderBySlopes(const ForwardSamples& samples, Index& with_slop
 }  // namespace
 
 Index countSlopePoints(Index simulations, Index unknown) {
-  // 1200 rows would train a surrogate of eight parameters in half the time, with sds 1 to 20 % larger.
+  // Of 1200 for all windows, sds of eight mechanisms were 1 to 20 % larger.
   constexpr Index kMaxRows = 2000;
   return std::clamp<Index>((kMaxRows - simulations) / std::max<Index>(unknown, 1), 0, simulations);
+}
+
+std::vector<Index> listFewSlopePoints(Index simulations, Index unknown, Index with_slopes) {
+  constexpr Index kFewRows = 700, kLeastShare = 4;
+  const Index by_rows = std::max<Index>(0, kFewRows - simulations) / std::max<Index>(unknown, 1);
+  std::vector<Index> few;
+  for (const Index count : {std::max(by_rows, with_slopes / kLeastShare), with_slopes / 2}) {
+    if (count >= with_slopes) {
+      break;  // all of them make few rows
+    }
+    if (few.empty() || count > few.back()) {
+      few.push_back(count);
+    }
+  }
+  return few;
 }
 
 WhitenedSamples whiten(const ForwardSamples& samples, const Eigen::VectorXd& center,

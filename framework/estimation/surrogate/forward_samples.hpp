@@ -24,6 +24,11 @@ struct ForwardSamples {
 /// are at most 2000 values and slopes in all, which keeps a fit of a window below a second.
 Eigen::Index countSlopePoints(Eigen::Index simulations, Eigen::Index unknown);
 
+/// How many of the m with slopes may do where a response is simple, rising: as many as leave 700 values and
+/// slopes in all, but no less than a quarter, which takes a twentieth of the time; then half of them.
+std::vector<Eigen::Index> listFewSlopePoints(Eigen::Index simulations, Eigen::Index unknown,
+                                             Eigen::Index with_slopes);
+
 /// They in units of the noise, in the order in which processes take them, those with slopes first.
 struct WhitenedSamples {
   Eigen::MatrixXd points;    ///< m x n

@@ -1,6 +1,8 @@
 #include "framework/estimation/surrogate/window_fit.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -31,6 +33,19 @@ WindowFit findScores(const FeatureWindow& rows, const WhitenedSamples& whitened)
     window.slopes = {whitened.slopes.values(Eigen::all, rows) * kept, whitened.slopes.variables};
   }
   return window;
+}
+
+/// Keeps the slopes at the first points alone.
+void keepSlopes(Index count, WindowFit& window) {
+  const Index m = window.slopes.countPoints();
+  if (count >= m) {
+    return;
+  }
+  MatrixXd kept(window.slopes.variables * count, window.slopes.values.cols());
+  for (Index v = 0; v < window.slopes.variables; ++v) {
+    kept.middleRows(v * count, count) = window.slopes.values.middleRows(v * m, count);
+  }
+  window.slopes.values = std::move(kept);
 }
 
 /// From slopes as well; false where rounding leaves their joint covariance without a Cholesky factor.
@@ -142,6 +157,49 @@ std::vector<WindowChoice> divide(WindowChoice whole, const std::vector<FeatureIn
   return parts;
 }
 
+Index countBelow(const std::vector<Index>& rising, Index limit) {
+  return std::distance(rising.begin(), std::lower_bound(rising.begin(), rising.end(), limit));
+}
+
+/// Fits the process; gives the precision that it is of, if `by_precision` and there is one.
+std::optional<gp::JointPrecision> fitOnce(const MatrixXd& points, bool by_precision, gp::StopFlag stop,
+                                          WindowFit& window) {
+  std::optional<gp::JointPrecision> precision =
+      by_precision ? factoriseWithSlopes(points, window) : std::nullopt;
+  std::vector<Index> all(static_cast<std::size_t>(points.cols()));
+  std::iota(all.begin(), all.end(), Index{0});
+  if (!precision || !fitByPrecision(*precision, all, points, window)) {
+    fitByChoice(points, stop, window);
+  }
+  return precision;
+}
+
+/// Of the score that is predicted worst, at points left out, in units of the noise's variance.
+double calcLargestErrorVariance(const gp::SharedProcess& process) {
+  return process.getLeftOut().amplitude.maxCoeff() * process.getLeftOut().variance.mean();
+}
+
+/// From few slopes, then from more as long as that leaves errors that matter.
+std::optional<gp::JointPrecision> fitWhole(const MatrixXd& points, bool by_precision, gp::StopFlag stop,
+                                           WindowFit& window) {
+  // Without any error at all, standard deviations would be smaller by half of it at most.
+  constexpr double kNegligible = 0.02;
+  const Index all = window.slopes.countPoints();
+  if (window.choice.structure.slopes) {
+    for (const Index few : listFewSlopePoints(points.cols(), window.slopes.variables, all)) {
+      WindowFit of_few = window;
+      keepSlopes(few, of_few);
+      of_few.slope_share = static_cast<double>(few) / static_cast<double>(all);
+      std::optional<gp::JointPrecision> precision = fitOnce(points, by_precision, stop, of_few);
+      if (of_few.choice.structure.slopes && calcLargestErrorVariance(*of_few.process) < kNegligible) {
+        window = std::move(of_few);
+        return precision;
+      }
+    }
+  }
+  return fitOnce(points, by_precision, stop, window);
+}
+
 }  // namespace
 
 std::vector<WindowChoice> divideWindow(const FeatureWindow& rows, const std::vector<FeatureInfo>& infos,
@@ -161,27 +219,25 @@ WindowFits fitWindow(const WindowChoice& chosen, const WhitenedSamples& samples,
   if (!window.choice.structure.slopes) {
     window.choice = gp::finishOnAll(window.choice, samples.points, window.scores, stop);
   }
-  const std::optional<gp::JointPrecision> precision =
-      folds.empty() ? std::nullopt : factoriseWithSlopes(samples.points, window);
-  std::vector<Index> all(static_cast<std::size_t>(samples.points.cols()));
-  std::iota(all.begin(), all.end(), Index{0});
-  if (!precision || !fitByPrecision(*precision, all, samples.points, window)) {
-    fitByChoice(samples.points, stop, window);
-  }
+  const std::optional<gp::JointPrecision> precision = fitWhole(samples.points, !folds.empty(), stop, window);
   for (const WhitenedFold& fold : folds) {
     WindowFit part = findScores(chosen.rows, fold.samples);
     part.choice = window.choice;
+    part.slope_share = window.slope_share;
+    keepSlopes(countBelow(fold.kept, window.slopes.countPoints()), part);
     if (!precision || !fitByPrecision(*precision, fold.kept, fold.samples.points, part)) {
-      part = refitWindow(chosen.rows, window.choice, fold.samples, stop);
+      part = refitWindow(chosen.rows, window.choice, window.slope_share, fold.samples, stop);
     }
     fits.folds.push_back(std::move(part));
   }
   return fits;
 }
 
-WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar,
+WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar, double slope_share,
                       const WhitenedSamples& samples, gp::StopFlag stop) {
   WindowFit window = findScores(rows, samples);
+  window.slope_share = slope_share;
+  keepSlopes(std::lround(slope_share * static_cast<double>(window.slopes.countPoints())), window);
   window.choice = similar.structure.slopes && window.slopes.variables > 0
                       ? similar
                       : gp::adaptSharedProcess(similar, samples.points, window.scores, stop);

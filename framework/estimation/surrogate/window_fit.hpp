@@ -16,6 +16,7 @@ struct WindowFit {
   Eigen::MatrixXd directions;  ///< k x c, of all whitened features
   Eigen::MatrixXd scores;      ///< n x c
   gp::SlopeData slopes;        ///< of the scores
+  double slope_share = 1.0;    ///< of the slopes known, those that are learnt from
   gp::SharedChoice choice;
   std::optional<gp::SharedProcess> process;
 };
@@ -48,12 +49,14 @@ struct WindowFits {
 };
 
 /// Fits a window anew, from values and slopes where that predicts better; then the folds, which share the
-/// factorisation of a joint covariance with slopes (gp::JointPrecision).
+/// factorisation of a joint covariance with slopes (gp::JointPrecision). Of the slopes few are taken
+/// (listFewSlopePoints) where the variances of the errors at points left out are below a fiftieth of the
+/// noise's already.
 WindowFits fitWindow(const WindowChoice& window, const WhitenedSamples& samples,
                      const std::vector<WhitenedFold>& folds, gp::StopFlag stop);
 
-/// Fits a window by a choice made on nearly the same samples.
-WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar,
+/// Fits a window by a choice made on nearly the same samples, from that share of their slopes.
+WindowFit refitWindow(const FeatureWindow& rows, const gp::SharedChoice& similar, double slope_share,
                       const WhitenedSamples& samples, gp::StopFlag stop);
 
 }  // namespace twinmap

@@ -334,6 +334,10 @@ TEST(SlopePoints, AreAllUntilValuesAndSlopesAreTwoThousand) {
   EXPECT_EQ(countSlopePoints(1000, 5), 200);
   EXPECT_EQ(countSlopePoints(2500, 5), 0);
   EXPECT_EQ(countSlopePoints(100, 0), 100);  // no unknown, no slopes
+  EXPECT_EQ(listFewSlopePoints(250, 8, 218), (std::vector<Eigen::Index>{56, 109}));
+  EXPECT_EQ(listFewSlopePoints(1000, 5, 200), (std::vector<Eigen::Index>{50, 100}));
+  EXPECT_EQ(listFewSlopePoints(250, 3, 250), (std::vector<Eigen::Index>{150}));
+  EXPECT_TRUE(listFewSlopePoints(40, 2, 40).empty());
 }
 
 /// Samples of an output at eight times: a smooth function of the points, from some time on a rough one.
