@@ -4,16 +4,21 @@
 #include <boost/math/distributions/complement.hpp>
 #include <cmath>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
 using Eigen::Index;
 
 std::vector<Index> findBeyondBounds(const LocalSurface& minimum) {
-  constexpr double kLevel = 0.01;    // that of the test for a mismatch
-  constexpr double kAtBound = 0.99;  // searches end a tenth of a standard deviation from the minimum
-  const Eigen::VectorXd step = calcBasinCovariance(minimum.information) * minimum.descent;
+  constexpr double kLevel = 0.01;     // that of the test for a mismatch
+  constexpr double kAtBound = 0.999;  // searches end near the minimum
+  // a ridge that is not seen at all leads nowhere
+  constexpr double kOfBox = 0.01 * kHalfWidthInformation;
+  const Index u = minimum.at.size();
+  const Eigen::VectorXd step = linalg::solvePositiveDefinite(
+      minimum.information + kOfBox * Eigen::MatrixXd::Identity(u, u), minimum.descent);
   int held = 0;
   std::vector<Index> beyond;
   for (Index j = 0; j < minimum.at.size(); ++j) {
