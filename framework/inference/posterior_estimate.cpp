@@ -97,7 +97,8 @@ TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vecto
   return tested;
 }
 
-SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos) {
+SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<ParameterSpec>& unknown,
+                     const std::vector<FeatureInfo>& infos) {
   SimulatorFit fit;
   fit.searches = posterior.starts;
   fit.found_best = posterior.found_best;
@@ -110,6 +111,9 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Feat
     fit.degrees = tested.degrees;
     fit.explained = fit.chi_square < calcChiSquareLimit(fit.degrees);
     fit.test = testResidual(tested.residual, tested.degrees, tested.infos);
+    for (const Index i : posterior.beyond) {
+      fit.beyond.push_back(unknown[static_cast<std::size_t>(i)].name.text);
+    }
     for (const FoundNoise& found : posterior.standardized.noise) {
       fit.noise.push_back({{}, {}, 0.0, 0.0, found});
     }
@@ -177,7 +181,7 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
   made.pareto_shape = posterior.pareto_shape;
   made.evaluations = static_cast<int>(posterior.weights.size());
   made.message = posterior.message;
-  made.fit = makeFit(posterior, infos);
+  made.fit = makeFit(posterior, unknown, infos);
   if (made.isReliable()) {
     made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),
                                  posterior.mean.head(p), posterior.covariance.topLeftCorner(p, p));

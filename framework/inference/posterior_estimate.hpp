@@ -38,9 +38,10 @@ struct SimulatorFit {
   Eigen::VectorXd residual;                ///< whitened
   ResidualTest test;
   std::vector<std::string>
-      outliers{};                    ///< features that are not noise and count for nothing, with their size
-  std::vector<NoiseReport> noise{};  ///< of the outputs of which something was inferred
-  Eigen::VectorXd best{};            ///< the unknown parameters (u)
+      outliers{};                     ///< features that are not noise and count for nothing, with their size
+  std::vector<NoiseReport> noise{};   ///< of the outputs of which something was inferred
+  Eigen::VectorXd best{};             ///< the unknown parameters (u)
+  std::vector<std::string> beyond{};  ///< of them, those that fit best beyond a bound (findBeyondBounds)
   int searches = 0, found_best = 0, simulations = 0;
 
   bool isSimulated() const { return degrees > 0.0; }

@@ -53,6 +53,8 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   Statuses statuses;
   if (isMismatch(inferred)) {
     statuses.emplace_back(toString(TrustStatus::kModelMismatch));
+  } else if (inferred.posterior->fit && !inferred.posterior->fit->beyond.empty()) {
+    statuses.emplace_back(toString(TrustStatus::kAtBounds));
   }
   if (inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
     statuses.emplace_back("outliers");

@@ -10,6 +10,7 @@
 #include "framework/analysis/rank_calibration.hpp"
 #include "framework/base/random/random.hpp"
 #include "framework/data/features/experiment_features.hpp"
+#include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/data/sensitivity/stencil_simulator.hpp"
 #include "framework/experiment/experiment_file.hpp"
@@ -62,7 +63,7 @@ std::string Judged::describe() const {
 
 PosteriorBench::PosteriorBench(const StudyRequest& request)
     : request_(request),
-      experiment_(followNoise(loadExperiment(request.file))),
+      experiment_(followNoise(readExperimentWithSignals(loadExperimentTree(request.file)))),
       layout_(makeLayout(experiment_)),
       extractor_(makeExtractor(experiment_, layout_)),
       response_noise_(experiment_.noise, layout_),

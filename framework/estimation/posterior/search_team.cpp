@@ -54,21 +54,37 @@ MatrixXd makeBasis(const VectorXd& held, const std::vector<Index>& free) {
   return basis;
 }
 
-/// (I + damping diag(I)) step = descent for what may move; the rest stays.
-VectorXd calcStep(const LocalSurface& local, const VectorXd& held, double damping) {
-  const std::vector<Index> free = findFree(local);
-  VectorXd step = VectorXd::Zero(local.at.size());
-  if (free.empty()) {
-    return step;
-  }
+/// (I + damping diag(I)) step = descent for the free coordinates, what has been stepped of the others given.
+VectorXd solveFree(const LocalSurface& local, const VectorXd& held, double damping,
+                   const std::vector<Index>& free, const VectorXd& stepped) {
+  VectorXd step = stepped;
   const MatrixXd basis = makeBasis(held, free);
   if (basis.cols() == 0) {
     return step;
   }
+  const VectorXd descent = local.descent - local.information * stepped;
   MatrixXd damped = basis.transpose() * local.information(free, free) * basis;
   const double floor = kFirstDiagonal * damped.diagonal().maxCoeff() + std::numeric_limits<double>::min();
   damped.diagonal() = (1.0 + damping) * damped.diagonal().array() + floor;
-  step(free) = basis * linalg::solvePositiveDefinite(damped, basis.transpose() * local.descent(free));
+  step(free) = basis * linalg::solvePositiveDefinite(damped, basis.transpose() * descent(free));
+  return step;
+}
+
+/// The step of Levenberg and Marquardt within the bounds: coordinates that it would take beyond them end
+/// there, and the others are solved for again, as those make up for these no longer.
+VectorXd calcStep(const LocalSurface& local, const VectorXd& held, double damping) {
+  std::vector<Index> free = findFree(local);
+  VectorXd step = VectorXd::Zero(local.at.size());
+  while (!free.empty()) {
+    const VectorXd all = solveFree(local, held, damping, free, step);
+    const auto leaves = [&](Index j) { return std::abs(local.at[j] + all[j]) > 1.0; };
+    const auto left = std::stable_partition(free.begin(), free.end(), [&](Index j) { return !leaves(j); });
+    if (left == free.end() || held.size() > 0) {
+      return all;
+    }
+    std::for_each(left, free.end(), [&](Index j) { step[j] = std::copysign(1.0, all[j]) - local.at[j]; });
+    free.erase(left, free.end());
+  }
   return step;
 }
 

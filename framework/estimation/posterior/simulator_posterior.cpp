@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "framework/estimation/informativeness.hpp"
+#include "framework/estimation/posterior/bound_test.hpp"
 #include "framework/estimation/posterior/linear_posterior.hpp"
 #include "framework/estimation/posterior/marginal_surface.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
@@ -170,6 +171,7 @@ std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const LogCoor
 void setBest(const BasinSearch& found, const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
   const Basin& best = found.basins.front();
   posterior.best = coordinates.toParameters(best.local.at);
+  posterior.beyond = findBeyondBounds(best.local);
   posterior.chi_square = best.local.chi_square;
   posterior.misfit = best.local.misfit;
   posterior.information = best.local.information;

@@ -24,9 +24,11 @@ struct SimulatorPosterior {
   Eigen::VectorXd weights;           ///< n, sum 1
   Eigen::VectorXd best;              ///< all unknown, the least misfit; there where anything was simulated
   std::vector<PosteriorMode> modes;  ///< the heaviest first
-  double misfit = 0.0;               ///< there: chi-square and that of the prior
-  Eigen::MatrixXd information;       ///< there, of all unknown, in LogCoordinates
-  Eigen::VectorXd residual;          ///< there, whitened; of one measurement after the other
+  std::vector<Eigen::Index>
+      beyond;                   ///< of all unknown, those that fit best beyond a bound (findBeyondBounds)
+  double misfit = 0.0;          ///< there: chi-square and that of the prior
+  Eigen::MatrixXd information;  ///< there, of all unknown, in LogCoordinates
+  Eigen::VectorXd residual;     ///< there, whitened; of one measurement after the other
   Eigen::VectorXd residual_weights;  ///< about 0 of outliers (LocalSurface::weights)
   /// Of a single measurement, as they are independent and of unit variance if its hypothesis is true.
   ResidualLoss::Standardized standardized;

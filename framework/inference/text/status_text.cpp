@@ -21,7 +21,11 @@ using Eigen::Index;
 
 namespace {
 
-std::string listBeyondBounds(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+std::string listBeyondBounds(const InferredMeasurement& inferred, const Estimate& estimate,
+                             const std::vector<ParameterSpec>& parameters) {
+  if (inferred.posterior && inferred.posterior->fit && !inferred.posterior->fit->beyond.empty()) {
+    return listNames(inferred.posterior->fit->beyond);
+  }
   std::vector<std::string> names;
   for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const double mean = estimate.mean[static_cast<Index>(p)];
@@ -185,7 +189,7 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
     return explainNotice(Notice::kOutsideTraining, inferred.trust->distance);
   }
   if (is(Notice::kAtBounds)) {
-    return explainNotice(Notice::kAtBounds, listBeyondBounds(estimate, parameters));
+    return explainNotice(Notice::kAtBounds, listBeyondBounds(inferred, estimate, parameters));
   }
   if (is(Notice::kUninformative)) {
     return explainUninformative(estimate, parameters);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/estimation/posterior/bound_test.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
 #include "tests/framework/estimation/posterior/surface.hpp"
 
@@ -82,6 +83,37 @@ TEST(SearchTeam, StopsAtABoundWhereDescentLeadsOut) {
   team.run(20);
   EXPECT_EQ(team.getLocal(0).at[0], 1.0);
   EXPECT_NEAR(team.getLocal(0).at[1], 0.3, 1e-6);
+}
+
+/// y makes up for x along a steep valley that a bound of y cuts: a step clipped there would leave it.
+TEST(SearchTeam, StepsAlongABound) {
+  Surface valley(
+      2,
+      [](const VectorXd& x) {
+        return makeVector({100.0 * (x[0] + x[1]), x[0] - 3.0 * x[1]});
+      },
+      testing::makeParameters(2, -1.0, 1.0), 0.05, makeVector({-0.6, 1.2}));
+  SearchTeam team(valley.surface, makeVector({0.8, -0.8}));
+  team.run(8);
+  EXPECT_EQ(team.getLocal(0).at[1], 1.0);
+  EXPECT_NEAR(team.getLocal(0).at[0], -0.4, 1e-3);
+}
+
+TEST(BoundTest, NamesWhatFitsBestBeyondABound) {
+  const auto test = [](double truth) {
+    Surface bounded(
+        2,
+        [](const VectorXd& x) {
+          return makeVector({x[0] + x[1], x[1]});
+        },
+        testing::makeParameters(2, -1.0, 1.0), 0.05, makeVector({truth, 0.2}));
+    SearchTeam team(bounded.surface, makeVector({0.0, 0.0}));
+    team.run(20);
+    return findBeyondBounds(team.getLocal(0));
+  };
+  EXPECT_EQ(test(1.5), std::vector<Index>{0});  // 7 standard deviations of the noise of both together
+  EXPECT_TRUE(test(1.05).empty());
+  EXPECT_TRUE(test(0.9).empty());
 }
 
 TEST(SearchTeam, EndsInABasinThatIsKnown) {

@@ -244,6 +244,23 @@ TEST(Rest, EndsWhereTheForcePullsAway) {
   }
 }
 
+TEST(Rest, NeedsNoForce) {
+  // nothing acts on what lies at its stop until 0.5 s
+  ModelSpec model = makeModel(1.5);
+  addSliding(model, "x", "2");
+  model.system.elements.get<Stop>() = {rigidStop("x", "0.2618", "0")};
+  model.system.elements.get<ForceLaw>() = {law("x", "F - 30 * (x - 0.2618)")};
+  model.excitation = {pulse("F", "3", "0.5", "3")};
+  start(model, "x", "0.2618");
+  model.outputs = {coordinateOutput("x")};
+  VectorXd times(3);
+  times << 0.4, 0.5, 1.5;
+  const MatrixXd result = runModel(model, times);
+  EXPECT_EQ(result(0, 0), 0.2618);
+  EXPECT_EQ(result(1, 0), 0.2618);
+  EXPECT_NEAR(result(2, 0), 0.2618 + 0.1 * (1.0 - std::cos(std::sqrt(15.0))), 1e-8);
+}
+
 TEST(Rest, OfWhatFrictionHoldsToo) {
   // thrown against the stop it stays there: friction of 2 N holds what 1 N pulls away, 3 N do not
   ModelSpec model = makeModel(2.0);

@@ -1,5 +1,7 @@
 #include "framework/models/mechanism/lanes/recording/recorded_events.hpp"
 
+#include <limits>
+
 #include "framework/models/mechanism/equations/impulse.hpp"
 
 namespace twinmap {
@@ -131,7 +133,8 @@ class EventRecorder {
   /// What friction on the same coordinate holds cannot move into the stop.
   Symbol recordStopGuard(int k) const {
     const Symbol free = max(calcGap(k), orient(k, calcSliding(k, state_.speeds)));
-    Symbol guard = select(equal(state_.modes[k], Symbol(1.0)), orient(k, held_[k]), free);
+    const Symbol rests = orient(k, held_[k]) + std::numeric_limits<double>::min();  // no force does not lift
+    Symbol guard = select(equal(state_.modes[k], Symbol(1.0)), rests, free);
     for (int j = countStops(); j < countAll(); ++j) {
       if (getPair(j) == getPair(k)) {
         const Symbol sticks = both(equal(state_.modes[j], Symbol(0.0)), equal(state_.modes[k], Symbol(0.0)));
