@@ -172,8 +172,7 @@ Stretch findHeld(const Eigen::Ref<const VectorXd>& samples) {
 }
 
 /// Samples at the largest or the least value, and those of the longest stretch that holds another.
-void tryStandstill(const VectorXd& measured, const ResponseLayout& layout, Index output,
-                   const MisfitOfResponse& calcMisfit, Search& search) {
+void tryStandstill(const VectorXd& measured, const ResponseLayout& layout, Index output, Search& search) {
   const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
   const Index times = layout.times.size(), first = layout.getRow(output, 0);
   VectorXd unclipped = measured;
@@ -250,7 +249,7 @@ std::string explainByFault(const VectorXd& measured, const ResponseLayout& layou
     const Index first = layout.getRow(output, 0);
     tryUnits(measured, layout, output, calcMisfit, search);
     trySpikes(measured, layout, output, calcMisfit, search);
-    tryStandstill(measured, layout, output, calcMisfit, search);
+    tryStandstill(measured, layout, output, search);
     tryDrift(measured, layout, output, calcMisfit, search);
     for (Index other = 0; other < output; ++other) {
       VectorXd corrected = measured;

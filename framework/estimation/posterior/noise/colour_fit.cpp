@@ -80,9 +80,11 @@ VectorXd minimize(const std::function<double(const VectorXd&)>& calc, VectorXd a
   return at;
 }
 
-/// Central differences. A coefficient that n samples determine has a spread of about 1 / sqrt(n).
-MatrixXd calcHessian(const std::function<double(const VectorXd&)>& calc, const VectorXd& at, Index n) {
-  const double step = 0.5 / std::sqrt(static_cast<double>(n));
+/// Central differences, from within kLargestTangent. A coefficient that n samples determine has a spread of
+/// about 1 / sqrt(n).
+MatrixXd calcHessian(const std::function<double(const VectorXd&)>& calc, const VectorXd& minimum, Index n) {
+  const double step = 0.5 / std::sqrt(static_cast<double>(n)), largest = kLargestTangent - step;
+  const VectorXd at = minimum.cwiseMin(largest).cwiseMax(-largest);
   const Index p = at.size();
   const auto move = [&](Index i, double by_i, Index j, double by_j) {
     VectorXd moved = at;
