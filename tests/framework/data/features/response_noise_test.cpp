@@ -52,7 +52,7 @@ TEST(ResponseNoise, OfRoundedReadingsHasTheirVarianceAndTheirSteps) {
   spec.rounded = {{"z", kQuantum}};
   const ResponseNoise noise(spec, makeTwoOutputs());
   EXPECT_DOUBLE_EQ(noise.getStddev()[kTimes], std::sqrt(0.04 + kQuantum * kQuantum / 12.0));
-  EXPECT_EQ(noise.getStddev()[0], 3.0);
+  EXPECT_DOUBLE_EQ(noise.getStddev()[0], 3.0);
   const FeatureMatrix all = MatrixXd::Identity(2 * kTimes + 2, 2 * kTimes + 2).sparseView();
   const MatrixXd more = noise.calcCovariance(all).toMatrix() -
                         ResponseNoise(makeTwoNoises(), makeTwoOutputs()).calcCovariance(all).toMatrix();
