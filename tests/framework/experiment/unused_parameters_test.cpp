@@ -19,7 +19,7 @@ TEST(UnusedParameters, AreNamedWithTheirPlace) {
       "priors: [{correlated: {names: [m, k], correlation: 0.5}}]\n";
   const std::vector<std::string> unused =
       list("parameters:\n  m: {bounds: [1, 2]}\n  k: {bounds: [1, 2]}\n" + machine);
-  ASSERT_EQ(unused.size(), 1u);  // k_2 is another, and a prior is no use
+  ASSERT_EQ(unused.size(), 1u);  // k_2 is another, and a prior uses nothing
   EXPECT_EQ(unused[0].rfind("e.yaml:3:", 0), 0u) << unused[0];
   EXPECT_NE(unused[0].find("nothing uses this parameter"), std::string::npos) << unused[0];
 }
