@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kTrainSamples = 60, kTestSamples = 20, kFewEvaluations = 5;
-constexpr int kMoreTestSamples = 400;
+constexpr int kMoreTestSamples = 400, kMostTestSamples = 2000;  // what a block of them shares counts less
 constexpr double kCheapSimulation = 2e-3;  // s; those of more test samples do not make a plan long then
 constexpr double kMostColumns = 1000.0;    // of a probe: more would take longer than many runs
 constexpr int kMoreTrainSamples = 200;     // of a surrogate, whose time grows with the cube from there on
@@ -163,13 +163,16 @@ void measureTestSamples(const ExperimentSpec& experiment, const ExperimentSpec& 
   if (experiment.design.test.samples <= kMoreTestSamples || times.simulation > kCheapSimulation) {
     return;
   }
-  constexpr double kMore = kMoreTestSamples - kTestSamples;
+  const double cheap = kCheapSimulation / times.simulation * kMoreTestSamples;  // take no longer
+  const int tests =
+      static_cast<int>(std::min({cheap, double(kMostTestSamples), double(experiment.design.test.samples)}));
+  const double more = tests - kTestSamples;
   ExperimentSpec bare = makeBare(small);
-  bare.design.test.samples = kMoreTestSamples;
+  bare.design.test.samples = tests;
   const TimedRun many = timeRun(bare, "many", folder / "many");
-  times.simulation = std::max(getSimulation(many) - getSimulation(few), 0.0) / kMore;
+  times.simulation = std::max(getSimulation(many) - getSimulation(few), 0.0) / more;
   times.overhead += times.evaluation * kTestSamples;
-  times.evaluation = std::max(getRest(many) - getRest(few), 0.0) / kMore;
+  times.evaluation = std::max(getRest(many) - getRest(few), 0.0) / more;
   times.overhead = std::max(times.overhead - times.evaluation * kTestSamples, 0.0);
 }
 

@@ -261,6 +261,30 @@ TEST(Rest, NeedsNoForce) {
   EXPECT_NEAR(result(2, 0), 0.2618 + 0.1 * (1.0 - std::cos(std::sqrt(15.0))), 1e-8);
 }
 
+TEST(Rest, WhereASpringIsRelaxed) {
+  // let go 0.3 above the stop, on which it lands, creeps to it or is critically damped; then moved once more
+  for (const char* damping : {"0", "2", "8", "13.4", "13.5", "40"}) {
+    ModelSpec model = makeModel(4.0);
+    addSliding(model, "x", "1.5");
+    model.system.elements.get<Stop>() = {rigidStop("x", "0.2618", "0")};
+    model.system.elements.get<ForceLaw>() = {
+        law("x", std::string("F - 30 * (x - 0.2618) - ") + damping + " * x_dot")};
+    model.excitation = {pulse("F", "3", "3.5", "5")};
+    start(model, "x", "0.5618");
+    model.outputs = {coordinateOutput("x")};
+    VectorXd times(3);
+    times << 2.0, 3.4, 4.0;
+    const MatrixXd result = runModel(model, times);
+    const double natural = std::sqrt(20.0), decay = std::stod(damping) / 3.0;
+    if (decay < natural) {
+      const bool lands = 2.0 * std::sqrt(natural * natural - decay * decay) > EIGEN_PI;
+      EXPECT_NEAR(result(0, 0), 0.2618, lands ? 0.0 : 1e-3) << damping;
+    }
+    EXPECT_GE(result(1, 0), 0.2618 - 1e-12) << damping;
+    EXPECT_GT(result(2, 0), 0.2618 + 0.01) << damping;
+  }
+}
+
 TEST(Rest, OfWhatFrictionHoldsToo) {
   // thrown against the stop it stays there: friction of 2 N holds what 1 N pulls away, 3 N do not
   ModelSpec model = makeModel(2.0);

@@ -23,9 +23,9 @@ Symbol calcSide(const Symbol& speed) {
                 select(less(speed, Symbol(0.0)), Symbol(-1.0), Symbol(0.0)));
 }
 
-/// Speeds and modes behind an event.
+/// What an event changes.
 struct Behind {
-  Symbols speeds, modes;
+  Symbols coordinates, speeds, modes;
 };
 
 class EventRecorder {
@@ -44,7 +44,7 @@ class EventRecorder {
 
   RecordedEvents record() {
     RecordedEvents events;
-    Behind behind{state_.speeds, recordStart()};
+    Behind behind{state_.coordinates, state_.speeds, recordStart()};
     const Symbol is_start = equal(switched_.event, Symbol(0.0));
     for (std::size_t i = 0; i < behind.modes.size(); ++i) {
       behind.modes[i] = select(is_start, behind.modes[i], state_.modes[i]);
@@ -61,11 +61,11 @@ class EventRecorder {
       events.guards.push_back(recordTouchGuard(k, touches_[i]));
       const Symbol &depth = touches_[i].depth, inside = equal(state_.modes[k], Symbol(1.0));
       events.dips.push_back(select(inside, depth, -depth));
-      Behind toggled{state_.speeds, state_.modes};
+      Behind toggled{state_.coordinates, state_.speeds, state_.modes};
       toggled.modes[k] = 1.0 - state_.modes[k];
       choose(equal(switched_.event, Symbol(1.0 + k)), toggled, behind);
     }
-    append(state_.coordinates, events.transitions);
+    append(behind.coordinates, events.transitions);
     append(behind.speeds, events.transitions);
     append(state_.states, events.transitions);
     append(behind.modes, events.transitions);
@@ -84,6 +84,9 @@ class EventRecorder {
     symbols.insert(symbols.end(), more.begin(), more.end());
   }
   static void choose(const Symbol& chosen, const Behind& one, Behind& other) {
+    for (std::size_t i = 0; i < one.coordinates.size(); ++i) {
+      other.coordinates[i] = select(chosen, one.coordinates[i], other.coordinates[i]);
+    }
     for (std::size_t i = 0; i < one.speeds.size(); ++i) {
       other.speeds[i] = select(chosen, one.speeds[i], other.speeds[i]);
     }
@@ -153,7 +156,7 @@ class EventRecorder {
   /// The speeds behind an impulse along a switch's coordinates, and the modes that this leaves: friction that
   /// the impulse moves slides, and what it lifts off another stop is free.
   Behind strike(int k, const Symbol& change, const Symbol& mode, bool halts) const {
-    Behind behind{state_.speeds, state_.modes};
+    Behind behind{state_.coordinates, state_.speeds, state_.modes};
     const Symbols impulse = equations::calcImpulse(switched_.system, state_, getPair(k), change);
     for (std::size_t i = 0; i < impulse.size(); ++i) {
       behind.speeds[i] += impulse[i];
@@ -170,17 +173,28 @@ class EventRecorder {
   }
   bool hasSurfaceSpeed(int k) const { return k >= countStops() && getFriction(k).surface_speed.has_value(); }
 
+  /// Exactly at a stop, where the event was found but for rounding: a spring that is relaxed there then
+  /// pushes to neither side.
+  Symbols placeAt(int k) const {
+    Symbols coordinates = state_.coordinates;
+    coordinates[getPair(k).coordinate] = coordinates[getPair(k).coordinate] - orient(k, calcGap(k));
+    return coordinates;
+  }
+
   Behind recordImpact(int k) const {
     const Symbol speed = calcSliding(k, state_.speeds), &restitution = *stops_[k]->restitution;
     Behind behind = strike(k, -(1.0 + restitution) * speed, 0.0, false);
     ModelState<Symbol> flying = state_;
+    flying.coordinates = placeAt(k);
     flying.speeds = behind.speeds;
     flying.modes = behind.modes;
     const Symbol fall = -orient(k, getPair(k).of(switched_.calcMotion(flying).accelerations));
     const Symbol back = -restitution * orient(k, speed);
-    const Symbol rests = less(2.0 * back, kShortestFlight * switched_.duration * fall);
-    choose(rests, strike(k, -speed, 1.0, true), behind);
-    Behind leaving{state_.speeds, state_.modes};
+    const Symbol rests = lessOrEqual(2.0 * back, kShortestFlight * switched_.duration * fall);
+    Behind resting = strike(k, -speed, 1.0, true);
+    resting.coordinates = flying.coordinates;
+    choose(rests, resting, behind);
+    Behind leaving{state_.coordinates, state_.speeds, state_.modes};
     leaving.modes[k] = 0.0;
     choose(equal(state_.modes[k], Symbol(1.0)), leaving, behind);
     return behind;
@@ -193,7 +207,7 @@ class EventRecorder {
     const Symbol none(0.0), onwards = calcAcceleration(k, 1.0), backwards = calcAcceleration(k, -1.0);
     const Symbol halted =
         select(less(none, onwards), Symbol(1.0), select(less(backwards, none), Symbol(-1.0), none));
-    Behind behind{state_.speeds, state_.modes};
+    Behind behind{state_.coordinates, state_.speeds, state_.modes};
     behind.modes[k] = select(notEqual(state_.modes[k], none), halted, -calcSide(held_[k]));
     return behind;
   }
