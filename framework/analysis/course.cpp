@@ -42,11 +42,12 @@ VectorXd makeShape(const Change& change, const VectorXd& at) {
                        });
 }
 
-Changes listChanges(const VectorXd& stddevs, const VectorXd& at) {
-  const Index n = at.size(), places = std::min(n - 2, kMostPlaces);
+/// At kMostPlaces from `first` to before `last` (at most n - 2), or all of these.
+Changes listChanges(const VectorXd& stddevs, const VectorXd& at, Index first, Index last) {
+  const Index n = at.size(), places = std::min(last - first, kMostPlaces);
   Changes changes;
   for (Index k = 0; k < places; ++k) {
-    const Index place = k * (n - 2) / places;
+    const Index place = first + k * (last - first) / places;
     changes.list.push_back({CourseShape::kStep, place + 1});
     changes.list.push_back({CourseShape::kRamp, place});
   }
@@ -62,6 +63,13 @@ Changes listChanges(const VectorXd& stddevs, const VectorXd& at) {
     changes.regressors.col(c) = column / changes.lengths[c];
   }
   return changes;
+}
+
+/// All between a change and its neighbours among kMostPlaces.
+Changes listNear(const Change& change, const VectorXd& stddevs, const VectorXd& at) {
+  const Index last = at.size() - 2, apart = (last + kMostPlaces - 1) / kMostPlaces;
+  return listChanges(stddevs, at, std::max<Index>(0, change.begins - apart),
+                     std::min(last, change.begins + apart));
 }
 
 /// What the best change takes of the sum of squares of errors without their constant, and what it leaves.
@@ -113,13 +121,15 @@ void requireSizes(const VectorXd& values, const VectorXd& stddevs, const VectorX
 Course fitCourse(const VectorXd& values, const VectorXd& stddevs, const VectorXd& at, double level,
                  std::uint64_t seed) {
   requireSizes(values, stddevs, at);
-  const Changes changes = listChanges(stddevs, at);
-  const VectorXd errors = values.cwiseQuotient(stddevs);
-  const Gain found = findGain(changes, errors);
   const Index degrees = values.size() - 2;
+  const VectorXd errors = values.cwiseQuotient(stddevs);
+  const Changes spread = listChanges(stddevs, at, 0, degrees);
+  const Gain among = findGain(spread, errors);
+  const Changes changes = listNear(spread.list[static_cast<std::size_t>(among.best)], stddevs, at);
+  const Gain found = findGain(changes, errors);
   const bool scattered = isScattered(found.left, degrees);
   Course course;
-  course.p_value = calcPValue(changes, found, scattered, seed);
+  course.p_value = calcPValue(spread, among, scattered, seed);
   VectorXd explained = changes.weights.dot(errors) * changes.weights;
   double left = found.left + found.gain;
   if (course.p_value < level) {

@@ -26,11 +26,11 @@ constexpr Eigen::Index kFewestOfCourse = 6;
 
 /// The course of n >= kFewestOfCourse values with independent normal errors of the given standard deviations,
 /// at increasing places `at` (numbers of measurements, or times). Weighted least squares of a step and of a
-/// ramp at each of at most 64 places; the best one is taken where the gain of chi-square has p < `level`, by
-/// 1999 simulated sets without a change, seeded by `seed`. Where the values scatter by more about it than
-/// stated (p < .01), the gain is compared with that scatter instead, in the simulated sets as well, and
-/// `change_stddev` follows it. Throws std::invalid_argument for other sizes and standard deviations that are
-/// not positive. Some ms for 100 values.
+/// ramp at each of at most 64 places, then at all about the best one, which is taken where the gain of
+/// chi-square has p < `level`, by 1999 simulated sets without a change, seeded by `seed`. Where the values
+/// scatter by more about it than stated (p < .01), the gain is compared with that scatter instead, in the
+/// simulated sets as well, and `change_stddev` follows it. Throws std::invalid_argument for other sizes and
+/// standard deviations that are not positive. Some ms for 100 values.
 Course fitCourse(const Eigen::VectorXd& values, const Eigen::VectorXd& stddevs, const Eigen::VectorXd& at,
                  double level, std::uint64_t seed = 1);
 

@@ -205,8 +205,10 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
   const auto found = std::find_if(members_.begin(), members_.end(),
                                   [&](const Member& member) { return member.name == trial; });
   if (found == members_.end()) {
+    const bool has_trials = members_.size() > 1 || !members_.front().name.empty();
     throw ExperimentError("'" + trial + "' is not a trial of the experiment: it has " +
-                          listNames(listTrials()) + suggestName(trial, listTrials()));
+                          (has_trials ? listNames(listTrials()) + suggestName(trial, listTrials())
+                                      : "none; leave out --trial, several files go behind --joint"));
   }
   return *found;
 }

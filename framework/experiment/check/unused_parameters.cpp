@@ -1,7 +1,5 @@
 #include "framework/experiment/check/unused_parameters.hpp"
 
-#include <fmt/core.h>
-
 #include <cctype>
 #include <set>
 
@@ -57,9 +55,9 @@ std::vector<std::string> listUnusedParameters(const YamlNode& experiment) {
   std::vector<std::string> unused;
   for (const YamlEntry& parameter : parameters->entries) {
     if (words.count(parameter.key) == 0) {
-      unused.push_back(fmt::format(
-          "{}: nothing uses this parameter: name it in an expression of the system, or take it out",
-          toString(parameter.value.where)));
+      unused.push_back(
+          "parameters." + parameter.key +
+          ": nothing uses this parameter: name it in an expression of the system, or take it out");
     }
   }
   return unused;

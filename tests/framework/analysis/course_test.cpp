@@ -44,6 +44,19 @@ TEST(Course, OfAStepIsTheDifferenceOfTheWeightedMeans) {
   EXPECT_DOUBLE_EQ(course.p_value, 1.0 / 2000.0);
 }
 
+TEST(Course, OfALongHistoryIsFoundToTheMeasurement) {
+  for (const Index count : {99, 200, 317}) {
+    for (const Index begins : {Index{1}, count / 3, 2 * count / 3, count - 2}) {
+      VectorXd values = VectorXd::Constant(count, 5.0);
+      values.tail(count - begins).array() += 1.0;
+      const Course course = fitCourse(values, VectorXd::Constant(count, 0.05),
+                                      VectorXd::LinSpaced(count, 1.0, static_cast<double>(count)), kLevel);
+      EXPECT_EQ(course.shape, CourseShape::kStep);
+      EXPECT_EQ(course.begins, begins) << count;
+    }
+  }
+}
+
 TEST(Course, OfARampBeginsWhereItBends) {
   VectorXd values = VectorXd::Constant(kMeasurements, 2.0) + 0.01 * drawErrors(1);
   for (Index i = 10; i < kMeasurements; ++i) {
