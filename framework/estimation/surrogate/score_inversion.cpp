@@ -171,14 +171,21 @@ bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& desc
   return false;
 }
 
+namespace {
+
+constexpr double kGain =
+    0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
+
+}  // namespace
+
 /// False where the search has converged: a step would gain little, as the linear model predicts, or did.
 bool ScoreInversion::advance(const Metric& metric, VectorXd& unknown, Descent& descent) {
-  constexpr double kGain =
-      0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
   makeNormalEquations(metric);
-  if (predictGain(unknown) < kGain) {
-    return false;
-  }
+  return predictGain(unknown) >= kGain && moveOn(metric, unknown, descent);
+}
+
+/// The rest of advance() where a step would gain something.
+bool ScoreInversion::moveOn(const Metric& metric, VectorXd& unknown, Descent& descent) {
   const double before = descent.objective;
   if (!step(metric, unknown, descent)) {
     descent.objective = calcObjective(metric, unknown);
@@ -187,7 +194,7 @@ bool ScoreInversion::advance(const Metric& metric, VectorXd& unknown, Descent& d
   return before - descent.objective >= kGain;
 }
 
-/// Of an undamped step that no bound stops.
+/// Of an undamped step that no bound stops, which step_ then is.
 double ScoreInversion::predictGain(const VectorXd& unknown) {
   return solveStep(unknown, 0.0) ? (gradient_ - kHalfWidthInformation * pull_).dot(step_)
                                  : std::numeric_limits<double>::infinity();
@@ -238,8 +245,14 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::ve
     Descent descent{calcObjective(leading_, minimum.point)};
     bool moves = true, apart = true;
     for (int i = 0; i < kSteps && moves && apart; ++i) {
-      moves = advance(leading_, minimum.point, descent);
-      apart = is_apart(minimum.point, i < kFirstSteps ? kOnTheWay : kApart);
+      const double distance = i < kFirstSteps ? kOnTheWay : kApart;
+      makeNormalEquations(leading_);
+      moves = predictGain(minimum.point) >= kGain;
+      apart = is_apart(minimum.point + step_, distance);  // before the step, which costs an evaluation
+      if (moves && apart) {
+        moves = moveOn(leading_, minimum.point, descent);
+        apart = is_apart(minimum.point, distance);
+      }
     }
     if (apart) {
       minimum.objective = calcObjective(rough_, minimum.point);

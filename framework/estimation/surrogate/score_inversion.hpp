@@ -113,6 +113,7 @@ class ScoreInversion {
   void makeNormalEquations(const Metric& metric);
   bool step(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
   bool advance(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
+  bool moveOn(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
   void calcPull(const Eigen::VectorXd& unknown);
   double predictGain(const Eigen::VectorXd& unknown);
   bool solveStep(const Eigen::VectorXd& unknown, double damping);

@@ -109,7 +109,7 @@ static int take_step(twinmap_state *state, int metric, double *unknown, double *
   return 0;
 }
 
-/* Of an undamped step that no bound stops, as the linear model has it. */
+/* Of an undamped step that no bound stops, which state->step then is, as the linear model has it. */
 static double predicted_gain(twinmap_state *state, const double *unknown)
 {
   double gain = 0.0;
@@ -125,20 +125,24 @@ static double predicted_gain(twinmap_state *state, const double *unknown)
   return gain;
 }
 
-/* A step; 0 where the search has converged: a step would gain little, or did. */
-static int advance(twinmap_state *state, int metric, double *unknown, double *objective, double *damping)
+static const double least_gain = 0.01; /* a step of a tenth of a standard deviation: the linear model tells the rest */
+
+/* A step that would gain something; 0 where it did not. */
+static int move_on(twinmap_state *state, int metric, double *unknown, double *objective, double *damping)
 {
-  const double least_gain = 0.01; /* a step of a tenth of a standard deviation: the linear model tells the rest */
   const double before = *objective;
-  make_normal_equations(state, metric);
-  if (predicted_gain(state, unknown) < least_gain) {
-    return 0;
-  }
   if (!take_step(state, metric, unknown, objective, damping)) {
     *objective = calc_objective(state, metric, unknown);
     return 0;
   }
   return before - *objective >= least_gain;
+}
+
+/* A step; 0 where the search has converged: a step would gain little, or did. */
+static int advance(twinmap_state *state, int metric, double *unknown, double *objective, double *damping)
+{
+  make_normal_equations(state, metric);
+  return predicted_gain(state, unknown) >= least_gain && move_on(state, metric, unknown, objective, damping);
 }
 
 static const double first_damping = 1e-3;
@@ -193,15 +197,24 @@ static void search_roughly(twinmap_state *state, int starts, const double *start
   const double on_the_way = 0.15, apart = 0.05; /* in half widths, after the first steps and at the end */
   const double hopeless = 30.0;                 /* e^-15 of the evidence, and errors of the rough metric */
   double point[U];
-  int count = 0, s, i;
+  int count = 0, s, i, v;
   for (s = 0; s < starts; ++s) {
     double objective, damping = first_damping;
     int moves = 1, alone = 1;
     memcpy(point, start + s * U, sizeof point);
     objective = calc_objective(state, METRIC_LEADING, point);
     for (i = 0; i < 12 && moves && alone; ++i) {
-      moves = advance(state, METRIC_LEADING, point, &objective, &damping);
-      alone = is_apart(state, count, point, i < 3 ? on_the_way : apart);
+      const double distance = i < 3 ? on_the_way : apart;
+      make_normal_equations(state, METRIC_LEADING);
+      moves = predicted_gain(state, point) >= least_gain;
+      for (v = 0; v < U; ++v) {
+        state->trial[v] = point[v] + state->step[v];
+      }
+      alone = is_apart(state, count, state->trial, distance); /* before the step, which costs an evaluation */
+      if (moves && alone) {
+        moves = move_on(state, METRIC_LEADING, point, &objective, &damping);
+        alone = is_apart(state, count, point, distance);
+      }
     }
     if (!alone) {
       continue;
