@@ -173,8 +173,7 @@ bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& desc
 
 namespace {
 
-constexpr double kGain =
-    0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
+constexpr double kGain = 0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
 
 }  // namespace
 
