@@ -24,9 +24,9 @@ struct ProbeTimes {
 };
 
 /// Runs small versions of an experiment in a temporary folder: the map alone with 60 training and 20 test
-/// samples; all stages with up to 200 training samples, for their times; the map with 400 to 2000 test samples,
-/// where there are more and they are cheap, for what grows with them; then with more noise draws and few
-/// evaluations, to see how an evaluation of the marginal likelihood grows with the samples, up to
+/// samples; all stages with up to 200 training samples, for their times; the map with 400 to 2000 test
+/// samples, where there are more and they are cheap, for what grows with them; then with more noise draws and
+/// few evaluations, to see how an evaluation of the marginal likelihood grows with the samples, up to
 /// `most_samples` or 1000.
 ProbeTimes measureProbe(const ExperimentSpec& experiment, double most_samples);
 
