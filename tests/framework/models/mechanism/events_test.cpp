@@ -244,18 +244,26 @@ TEST(Rest, EndsWhereTheForcePullsAway) {
   }
 }
 
+/// A mass whose spring of 30 N/m is relaxed at its rigid stop, at 0.2618 m; from `pulled` s on 3 N pull it
+/// away.
+ModelSpec makeRelaxedAtStop(double duration, const char* mass, const char* damping, const char* place,
+                            const char* pulled) {
+  ModelSpec model = makeModel(duration);
+  addSliding(model, "x", mass);
+  model.system.elements.get<Stop>() = {rigidStop("x", "0.2618", "0")};
+  model.system.elements.get<ForceLaw>() = {
+      law("x", std::string("F - 30 * (x - 0.2618) - ") + damping + " * x_dot")};
+  model.excitation = {pulse("F", "3", pulled, "5")};
+  start(model, "x", place);
+  model.outputs = {coordinateOutput("x")};
+  return model;
+}
+
 TEST(Rest, NeedsNoForce) {
   // nothing acts on what lies at its stop until 0.5 s
-  ModelSpec model = makeModel(1.5);
-  addSliding(model, "x", "2");
-  model.system.elements.get<Stop>() = {rigidStop("x", "0.2618", "0")};
-  model.system.elements.get<ForceLaw>() = {law("x", "F - 30 * (x - 0.2618)")};
-  model.excitation = {pulse("F", "3", "0.5", "3")};
-  start(model, "x", "0.2618");
-  model.outputs = {coordinateOutput("x")};
   VectorXd times(3);
   times << 0.4, 0.5, 1.5;
-  const MatrixXd result = runModel(model, times);
+  const MatrixXd result = runModel(makeRelaxedAtStop(1.5, "2", "0", "0.2618", "0.5"), times);
   EXPECT_EQ(result(0, 0), 0.2618);
   EXPECT_EQ(result(1, 0), 0.2618);
   EXPECT_NEAR(result(2, 0), 0.2618 + 0.1 * (1.0 - std::cos(std::sqrt(15.0))), 1e-8);
@@ -264,17 +272,9 @@ TEST(Rest, NeedsNoForce) {
 TEST(Rest, WhereASpringIsRelaxed) {
   // let go 0.3 above the stop, on which it lands, creeps to it or is critically damped; then moved once more
   for (const char* damping : {"0", "2", "8", "13.4", "13.5", "40"}) {
-    ModelSpec model = makeModel(4.0);
-    addSliding(model, "x", "1.5");
-    model.system.elements.get<Stop>() = {rigidStop("x", "0.2618", "0")};
-    model.system.elements.get<ForceLaw>() = {
-        law("x", std::string("F - 30 * (x - 0.2618) - ") + damping + " * x_dot")};
-    model.excitation = {pulse("F", "3", "3.5", "5")};
-    start(model, "x", "0.5618");
-    model.outputs = {coordinateOutput("x")};
     VectorXd times(3);
     times << 2.0, 3.4, 4.0;
-    const MatrixXd result = runModel(model, times);
+    const MatrixXd result = runModel(makeRelaxedAtStop(4.0, "1.5", damping, "0.5618", "3.5"), times);
     const double natural = std::sqrt(20.0), decay = std::stod(damping) / 3.0;
     if (decay < natural) {
       const bool lands = 2.0 * std::sqrt(natural * natural - decay * decay) > EIGEN_PI;
