@@ -26,7 +26,7 @@ std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
 }
 
 LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown) {
-  constexpr Index kScoresPerUnknown = 10;
+  constexpr Index kScoresPerUnknown = 5;
   const ArrayXd weights = calcRoughWeights(surrogate);
   const ArrayXd said = surrogate.scores.rowwise().squaredNorm().array() * weights.square();
   std::vector<double> order(said.data(), said.data() + said.size());

@@ -15,7 +15,7 @@ Eigen::ArrayXd calcRoughWeights(const ForwardSurrogate& surrogate);
 std::vector<Eigen::Index> rankSimulations(const ForwardSurrogate& surrogate,
                                           const Eigen::Ref<const Eigen::VectorXd>& scores);
 
-/// The scores that say most, some ten for each unknown: a search with them comes near enough to a minimum, at
+/// The scores that say most, some five for each unknown: a search with them comes near enough to a minimum, at
 /// a fraction of the cost.
 struct LeadingScores {
   Eigen::ArrayXd weights;            ///< r, 1 / stddev of noise and mean error; 0 of scores left out
