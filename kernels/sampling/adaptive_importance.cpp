@@ -79,7 +79,7 @@ AdaptiveDraws sampleAdaptively(const LogDensities& density, const BoxMixture& fi
     const RoundNumbers& next = numbers(round);
     const WeightedDraws spread =
         temper(evaluated.points, log_weights, kMinDraws * static_cast<double>(evaluated.points.rows()));
-    addRound(density, coverDraws(spread, next.centers), next, evaluated);
+    addRound(density, coverDraws(spread, next.centers, options.local), next, evaluated);
     log_weights = calcLogWeights(evaluated);
     weighted = summarize(evaluated, log_weights);
   }

@@ -25,6 +25,7 @@ struct AdaptiveOptions {
   double enough = 0.2;
   /// Likewise with a Pareto shape above it, where the weights have no variance.
   double good_pareto_shape = 0.5;
+  LocalNormals local;  ///< of the parts about single draws; else the draws nearby say how wide these are
 };
 
 /// Draws of a density, weighted.

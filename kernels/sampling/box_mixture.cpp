@@ -13,6 +13,7 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kReach = 0.5;  // standard deviations of all draws to those that are nearby
 constexpr double kLogRootTwoPi = 0.91893853320467274;
 
 /// Log densities (n) of one part.
@@ -25,7 +26,6 @@ VectorXd calcPartLogDensities(const NormalPart& part, const MatrixXd& points) {
 
 /// Weighted draws near a point: a normal weight of half a standard deviation in the metric of `lower`.
 WeightedDraws weighNearby(const WeightedDraws& draws, const VectorXd& center, const MatrixXd& lower) {
-  constexpr double kReach = 0.5;
   const MatrixXd apart = linalg::solveLower(lower, draws.points.colwise() - center);
   const Eigen::ArrayXd log_weights =
       draws.weights.array().log() -
@@ -38,6 +38,15 @@ MatrixXd factorise(const WeightedDraws& draws) {
   constexpr double kFloor = 1e-16;  // of half-widths squared
   const Index u = draws.points.rows();
   return linalg::calcCholesky(calcCovariance(draws) + kFloor * MatrixXd::Identity(u, u)).lower;
+}
+
+std::vector<NormalPart> fitNearby(const WeightedDraws& draws, const MatrixXd& centers,
+                                  const MatrixXd& lower) {
+  std::vector<NormalPart> parts;
+  for (const auto& center : centers.colwise()) {
+    parts.push_back({0.0, center, factorise(weighNearby(draws, center, lower))});
+  }
+  return parts;
 }
 
 /// Normal numbers to uniform ones on (-1, 1).
@@ -89,7 +98,7 @@ VectorXd BoxMixture::calcLogDensities(const MatrixXd& points) const {
   return mixLogDensities(log_densities, shares);
 }
 
-BoxMixture coverDraws(const WeightedDraws& draws, const VectorXd& uniforms) {
+BoxMixture coverDraws(const WeightedDraws& draws, const VectorXd& uniforms, const LocalNormals& local) {
   constexpr double kWidening = 1.25, kMomentShare = 0.4, kUniformShare = 0.05;
   // wider parts beside those of the draws nearby, which have thinner ends than what they were drawn from
   constexpr double kWidths[] = {1.0, 2.0, 4.0}, kWidthShares[] = {0.7, 0.2, 0.1};
@@ -100,10 +109,9 @@ BoxMixture coverDraws(const WeightedDraws& draws, const VectorXd& uniforms) {
   centers << resample(draws, uniforms.head(count - flat_count)), resample(flat, uniforms.tail(flat_count));
   std::vector<NormalPart> parts{{kMomentShare, calcMean(draws), kWidening * lower}};
   const double share = (1.0 - kMomentShare - kUniformShare) / static_cast<double>(count);
-  for (const auto& center : centers.colwise()) {
-    const MatrixXd own = factorise(weighNearby(draws, center, lower));
+  for (const NormalPart& own : local ? local(centers, kReach * lower) : fitNearby(draws, centers, lower)) {
     for (std::size_t k = 0; k < std::size(kWidths); ++k) {
-      parts.push_back({kWidthShares[k] * share, center, kWidths[k] * own});
+      parts.push_back({kWidthShares[k] * share, own.mean, kWidths[k] * own.lower});
     }
   }
   return BoxMixture(std::move(parts));

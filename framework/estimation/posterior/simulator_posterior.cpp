@@ -1,7 +1,6 @@
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -9,13 +8,13 @@
 #include "framework/estimation/informativeness.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
 #include "framework/estimation/posterior/linear_posterior.hpp"
-#include "framework/estimation/posterior/marginal_surface.hpp"
+#include "framework/estimation/posterior/posterior_draws.hpp"
+#include "framework/estimation/posterior/profile_ends.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
-#include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {
 
@@ -23,79 +22,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using importance::AdaptiveDraws;
-using importance::BoxMixture;
-using importance::RoundNumbers;
 
 namespace {
-
-constexpr int kMaxRounds = 8;  // bent ridges take several until the mixture follows them
-constexpr double kEnough =
-    0.4;  // effective draws a draw of a round: with 200, quantiles at 2.5 % are as good as means
-constexpr int kCenters = 24;  // parts about single draws, of a proposal
-
-/// The numbers of the rounds, made when first asked for.
-class Numbers {
- public:
-  Numbers(Index dimensions, const SimulatorPosteriorOptions& options)
-      : dimensions_(dimensions), draws_(options.draws), random_(options.seed, RandomPurpose::kPosterior) {}
-
-  const RoundNumbers& get(int round) {
-    while (static_cast<int>(rounds_.size()) <= round) {
-      rounds_.push_back(make(static_cast<std::uint64_t>(rounds_.size())));
-    }
-    return rounds_[static_cast<std::size_t>(round)];
-  }
-
- private:
-  RoundNumbers make(std::uint64_t round) const {
-    const auto uniform = [&](std::uint64_t channel) {
-      return [this, channel, round](Index i) {
-        return random_.calcUniform(static_cast<std::uint64_t>(i), channel, round);
-      };
-    };
-    RoundNumbers numbers{VectorXd::NullaryExpr(draws_, uniform(0)), MatrixXd(dimensions_, draws_),
-                         VectorXd::NullaryExpr(kCenters, uniform(1))};
-    for (Index i = 0; i < draws_; ++i) {
-      random_.drawNormals(static_cast<std::uint64_t>(i), round, numbers.normals.col(i).data(),
-                          static_cast<std::size_t>(dimensions_));
-    }
-    return numbers;
-  }
-
-  const Index dimensions_, draws_;
-  const RandomStream random_;
-  std::vector<RoundNumbers> rounds_;
-};
-
-/// The shares of the basins by Laplace's approximation, half of all spread evenly: it is wrong where a basin
-/// is not a paraboloid.
-VectorXd calcShares(const std::vector<Basin>& basins, const MisfitSurface& surface) {
-  const auto count = static_cast<Index>(basins.size());
-  VectorXd logs(count);
-  for (Index k = 0; k < count; ++k) {
-    const Basin& basin = basins[static_cast<std::size_t>(k)];
-    const MatrixXd lower = linalg::calcCholesky(basin.covariance).lower;
-    logs[k] =
-        -0.5 * basin.local.loss + lower.diagonal().array().log().sum() + surface.calcLogPrior(basin.local.at);
-  }
-  const VectorXd weights = (logs.array() - logs.maxCoeff()).exp();
-  return (0.5 * weights / weights.sum()).array() + 0.5 / static_cast<double>(count);
-}
-
-/// Most draws as far from a basin's centre as its covariance says, some twice and few four times as far, and
-/// few anywhere.
-BoxMixture proposeFirst(const std::vector<Basin>& basins, const VectorXd& shares) {
-  constexpr double kNear = 0.7, kFar = 0.2, kFarthest = 0.05;
-  std::vector<importance::NormalPart> parts;
-  for (std::size_t k = 0; k < basins.size(); ++k) {
-    const double share = shares[static_cast<Index>(k)];
-    const MatrixXd lower = linalg::calcCholesky(basins[k].covariance).lower;
-    parts.push_back({kNear * share, basins[k].local.at, 1.1 * lower});
-    parts.push_back({kFar * share, basins[k].local.at, 2.0 * lower});
-    parts.push_back({kFarthest * share, basins[k].local.at, 4.0 * lower});
-  }
-  return BoxMixture(std::move(parts));
-}
 
 MatrixXd toCoordinates(const LogCoordinates& coordinates, const MatrixXd& points) {
   MatrixXd at(points.rows(), points.cols());
@@ -193,71 +121,74 @@ ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTri
       .standardize(best.residual, jacobian, best.degrees);
 }
 
-/// The basins as they are seen in the first `drawn` coordinates alone.
-std::vector<Basin> projectBasins(std::vector<Basin> basins, Index drawn) {
-  for (Basin& basin : basins) {
-    basin.local.at = VectorXd(basin.local.at.head(drawn));
-    basin.covariance = MatrixXd(basin.covariance.topLeftCorner(drawn, drawn));
-  }
-  return basins;
-}
-
-/// Basins and the valleys between them, in the coordinates in which they are sampled.
-struct Landscape {
-  std::vector<Basin> basins;
-  Valleys valleys;
-  bool is_straight = true;  // RidgeShape
+/// Draws, and the coordinates in which they were drawn.
+struct Sampling {
+  std::vector<Index> plain;  ///< of LogCoordinates
+  Landscape landscape;
+  AdaptiveDraws drawn;
+  std::string obstacle;  ///< why they are not to be believed; else empty
+  int simulations = 0;   ///< of surfaces other than that of the searches
 };
 
-/// Where the draws of the first round go: basins and floors of valleys, by the shares of their masses.
-BoxMixture propose(const MisfitSurface& surface, const Landscape& landscape, Index drawn) {
-  std::vector<Basin> places = landscape.basins;
-  const std::vector<Basin>& floors = landscape.valleys.floors;
-  places.insert(places.end(), floors.begin(), floors.end());
-  const VectorXd shares = calcShares(places, surface);
-  if (landscape.is_straight) {
-    std::transform(landscape.basins.begin(), landscape.basins.end(), places.begin(), levelBasin);
+std::string findObstacle(const PosteriorProblem& problem, MisfitSurface& surface, const Sampling& sampling) {
+  const std::vector<Basin>& basins = sampling.landscape.basins;
+  if (problem.drawn > kManyUnknown && !areOneBasin(surface, basins)) {
+    return "several minima of so many parameters explain the measurement, and only one is sampled";
   }
-  return proposeFirst(projectBasins(std::move(places), drawn), shares);
+  // where the first round did, the posterior is what the linear models of the basins say
+  const bool is_adapted = sampling.drawn.rounds > 1 && problem.drawn == surface.getDimensions();
+  if (sampling.drawn.isReliable() && is_adapted &&
+      endTooEarly(surface, sampling.drawn.draws, basins.front().local.misfit)) {
+    return "the draws end where the measurement still fits";
+  }
+  return sampling.drawn.findObstacle();
 }
 
-AdaptiveDraws drawFrom(MisfitSurface& surface, const Landscape& landscape, Index drawn,
-                       const SimulatorPosteriorOptions& options) {
-  Numbers numbers(drawn, options);
-  importance::AdaptiveOptions adaptive;
-  adaptive.max_rounds = kMaxRounds;
-  adaptive.enough = kEnough;
-  std::vector<Index> kept(static_cast<std::size_t>(drawn));
-  std::iota(kept.begin(), kept.end(), Index{0});
-  std::optional<MarginalSurface> marginal;
-  if (drawn < surface.getDimensions()) {
-    marginal.emplace(surface, kept, landscape.basins);
+/// In the logarithms, or as findRidgeShape() says.
+Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                      const PosteriorDrawOptions& options) {
+  const RidgeShape shape = findRidgeShape(whole.upd(), found.basins.front());
+  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
+  std::unique_ptr<ProblemSurface> straight;
+  if (!shape.plain.empty()) {
+    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
+    sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), straight->upd());
   }
-  return importance::sampleAdaptively(
-      [&](const MatrixXd& points) {
-        return marginal ? marginal->calcLogPosteriors(points) : surface.calcLogPosteriors(points);
-      },
-      propose(surface, landscape, drawn),
-      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
+  MisfitSurface& surface = straight ? straight->upd() : whole.upd();
+  sampling.drawn = drawPosterior(surface, sampling.landscape, problem.drawn, options);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  sampling.simulations = straight ? surface.getSimulations() : 0;
+  return sampling;
 }
 
-/// Draws of the first `kept` coordinates: about the only basin (areOneBasin) of more than kFewUnknown as if
-/// the response were linear, if that is good enough; else of all basins by mixtures, on the floors of valleys
-/// too, which are followed then.
-AdaptiveDraws draw(MisfitSurface& surface, Landscape& landscape, Index kept,
-                   const SimulatorPosteriorOptions& options) {
-  const bool has_many = kept > kManyUnknown;
-  if (has_many || (surface.getDimensions() > kFewUnknown && areOneBasin(surface, landscape.basins))) {
-    AdaptiveDraws drawn = sampleLinearized(surface, landscape.basins.front(), options.draws, options.seed);
-    const bool is_good = drawn.isReliable() && drawn.effective_sample_size >= kEnough * options.draws &&
-                         drawn.pareto_shape <= importance::AdaptiveOptions().good_pareto_shape;
-    if (has_many || is_good) {
-      drawn.draws.points = MatrixXd(drawn.draws.points.topRows(kept));
-      return drawn;
+/// In the parameters as they are.
+Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
+                     const PosteriorDrawOptions& options) {
+  Sampling sampling;
+  sampling.plain.resize(problem.unknown.size());
+  std::iota(sampling.plain.begin(), sampling.plain.end(), Index{0});
+  ProblemSurface plain(problem, sampling.plain);
+  MisfitSurface& surface = plain.upd();
+  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.drawn = drawAlongWalks(surface, sampling.landscape.basins, options);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  sampling.simulations = surface.getSimulations();
+  return sampling;
+}
+
+Sampling sample(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                const PosteriorDrawOptions& options) {
+  Sampling sampling = sampleBasins(problem, found, whole, options);
+  const bool all_drawn = problem.drawn == static_cast<Index>(problem.unknown.size());
+  if (!sampling.obstacle.empty() && all_drawn && problem.drawn <= kManyUnknown) {
+    Sampling walked = sampleWalks(problem, found, whole, options);
+    walked.simulations += sampling.simulations;
+    if (walked.obstacle.empty()) {
+      return walked;
     }
+    sampling.simulations = walked.simulations;
   }
-  landscape.valleys = followValleys(surface, landscape.basins);
-  return drawFrom(surface, landscape, kept, options);
+  return sampling;
 }
 
 /// Moments, draws and modes, of the first parameters, as many as `coordinates` has.
@@ -314,26 +245,14 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   if (problem.trials.size() == 1) {
     posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
   }
-  const RidgeShape shape = findRidgeShape(surface, found.basins.front());
-  Landscape landscape{found.basins, {}, shape.is_straight};
-  std::unique_ptr<ProblemSurface> straight;
-  if (!shape.plain.empty()) {
-    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
-    landscape.basins = convertBasins(found.basins, coordinates, straight->upd());
-  }
-  MisfitSurface& sampled = straight ? straight->upd() : surface;
-  const AdaptiveDraws drawn = draw(sampled, landscape, problem.drawn, options);
-  posterior.simulations = surface.getSimulations() + (straight ? sampled.getSimulations() : 0);
-  posterior.effective_sample_size = drawn.effective_sample_size;
-  posterior.pareto_shape = drawn.pareto_shape;
-  posterior.message = drawn.findObstacle();
-  if (problem.drawn > kManyUnknown && !areOneBasin(sampled, landscape.basins)) {
-    posterior.message =
-        "several minima of so many parameters explain the measurement, and only one is sampled";
-  }
+  Sampling sampling = sample(problem, found, whole, options);
+  posterior.simulations = surface.getSimulations() + sampling.simulations;
+  posterior.effective_sample_size = sampling.drawn.effective_sample_size;
+  posterior.pareto_shape = sampling.drawn.pareto_shape;
+  posterior.message = sampling.obstacle;
   if (posterior.isReliable()) {
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
-    setDraws(drawn, landscape, LogCoordinates(kept, shape.plain), posterior);
+    setDraws(sampling.drawn, sampling.landscape, LogCoordinates(kept, sampling.plain), posterior);
     posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
   }
   return posterior;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/posterior_draws.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
 
 namespace twinmap {
@@ -73,17 +74,16 @@ struct PosteriorProblem {
   Eigen::Index drawn = 0;
 };
 
-struct SimulatorPosteriorOptions {
-  int draws = 512;  ///< of a round; the error of a mean is then below a tenth of a standard deviation
-  std::uint64_t seed = 1;
+struct SimulatorPosteriorOptions : PosteriorDrawOptions {
   BasinSearchOptions search{};
 };
 
 /// Finds every basin (findBasins), then samples all of them together (importance::sampleAdaptively) in
 /// LogCoordinates, with sums in the parameters themselves (findRidgeShape), from a mixture of what the linear
-/// models in the basins say. Without a map or a surrogate.
-/// given: points of the unknown parameters (u x n) to search from as well. The result depends on neither
-/// threads nor other measurements. Cost: some 2000 simulations for the basins and `draws` a round.
+/// models in the basins say. Where the draws cannot be believed, or end where the measurement still fits
+/// (endTooEarly), they come from drawAlongWalks(), in the parameters as they are. Without a map or a
+/// surrogate. given: points of the unknown parameters (u x n) to search from as well. The result depends on
+/// neither threads nor other measurements. Cost: some 2000 simulations for the basins and `draws` a round.
 SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Eigen::MatrixXd& given,
                                    const SimulatorPosteriorOptions& options);
 

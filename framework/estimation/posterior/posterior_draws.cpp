@@ -1,0 +1,181 @@
+#include "framework/estimation/posterior/posterior_draws.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "framework/base/random/random.hpp"
+#include "framework/estimation/posterior/linear_posterior.hpp"
+#include "framework/estimation/posterior/local_walk.hpp"
+#include "framework/estimation/posterior/marginal_surface.hpp"
+#include "framework/estimation/posterior/straight_ridge.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using importance::AdaptiveDraws;
+using importance::BoxMixture;
+using importance::RoundNumbers;
+
+namespace {
+
+constexpr int kMaxRounds = 8;  // bent ridges take several until the mixture follows them
+constexpr double kEnough =
+    0.4;  // effective draws a draw of a round: with 200, quantiles at 2.5 % are as good as means
+constexpr int kCenters = 24;  // parts about single draws, of a proposal
+
+/// The numbers of the rounds, made when first asked for.
+class Numbers {
+ public:
+  Numbers(Index dimensions, const PosteriorDrawOptions& options)
+      : dimensions_(dimensions), draws_(options.draws), random_(options.seed, RandomPurpose::kPosterior) {}
+
+  const RoundNumbers& get(int round) {
+    while (static_cast<int>(rounds_.size()) <= round) {
+      rounds_.push_back(make(static_cast<std::uint64_t>(rounds_.size())));
+    }
+    return rounds_[static_cast<std::size_t>(round)];
+  }
+
+ private:
+  RoundNumbers make(std::uint64_t round) const {
+    const auto uniform = [&](std::uint64_t channel) {
+      return [this, channel, round](Index i) {
+        return random_.calcUniform(static_cast<std::uint64_t>(i), channel, round);
+      };
+    };
+    RoundNumbers numbers{VectorXd::NullaryExpr(draws_, uniform(0)), MatrixXd(dimensions_, draws_),
+                         VectorXd::NullaryExpr(kCenters, uniform(1))};
+    for (Index i = 0; i < draws_; ++i) {
+      random_.drawNormals(static_cast<std::uint64_t>(i), round, numbers.normals.col(i).data(),
+                          static_cast<std::size_t>(dimensions_));
+    }
+    return numbers;
+  }
+
+  const Index dimensions_, draws_;
+  const RandomStream random_;
+  std::vector<RoundNumbers> rounds_;
+};
+
+importance::AdaptiveOptions makeOptions() {
+  importance::AdaptiveOptions options;
+  options.max_rounds = kMaxRounds;
+  options.enough = kEnough;
+  return options;
+}
+
+/// The shares of the basins by Laplace's approximation, half of all spread evenly: it is wrong where a basin
+/// is not a paraboloid.
+VectorXd calcShares(const std::vector<Basin>& basins, const MisfitSurface& surface) {
+  const auto count = static_cast<Index>(basins.size());
+  VectorXd logs(count);
+  for (Index k = 0; k < count; ++k) {
+    const Basin& basin = basins[static_cast<std::size_t>(k)];
+    const MatrixXd lower = linalg::calcCholesky(basin.covariance).lower;
+    logs[k] =
+        -0.5 * basin.local.loss + lower.diagonal().array().log().sum() + surface.calcLogPrior(basin.local.at);
+  }
+  const VectorXd weights = (logs.array() - logs.maxCoeff()).exp();
+  return (0.5 * weights / weights.sum()).array() + 0.5 / static_cast<double>(count);
+}
+
+/// Most draws as far from a basin's centre as its covariance says, some twice and few four times as far, and
+/// few anywhere.
+BoxMixture proposeFirst(const std::vector<Basin>& basins, const VectorXd& shares) {
+  constexpr double kNear = 0.7, kFar = 0.2, kFarthest = 0.05;
+  std::vector<importance::NormalPart> parts;
+  for (std::size_t k = 0; k < basins.size(); ++k) {
+    const double share = shares[static_cast<Index>(k)];
+    const MatrixXd lower = linalg::calcCholesky(basins[k].covariance).lower;
+    parts.push_back({kNear * share, basins[k].local.at, 1.1 * lower});
+    parts.push_back({kFar * share, basins[k].local.at, 2.0 * lower});
+    parts.push_back({kFarthest * share, basins[k].local.at, 4.0 * lower});
+  }
+  return BoxMixture(std::move(parts));
+}
+
+/// Where the draws of the first round go: basins and floors of valleys, by the shares of their masses.
+BoxMixture propose(const MisfitSurface& surface, const Landscape& landscape, Index drawn) {
+  std::vector<Basin> places = landscape.basins;
+  const std::vector<Basin>& floors = landscape.valleys.floors;
+  places.insert(places.end(), floors.begin(), floors.end());
+  const VectorXd shares = calcShares(places, surface);
+  if (landscape.is_straight) {
+    std::transform(landscape.basins.begin(), landscape.basins.end(), places.begin(), levelBasin);
+  }
+  return proposeFirst(projectBasins(std::move(places), drawn), shares);
+}
+
+/// By mixtures from basins and floors of valleys.
+AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, Index drawn,
+                           const PosteriorDrawOptions& options) {
+  Numbers numbers(drawn, options);
+  std::vector<Index> kept(static_cast<std::size_t>(drawn));
+  std::iota(kept.begin(), kept.end(), Index{0});
+  std::optional<MarginalSurface> marginal;
+  if (drawn < surface.getDimensions()) {
+    marginal.emplace(surface, kept, landscape.basins);
+  }
+  return importance::sampleAdaptively(
+      [&](const MatrixXd& points) {
+        return marginal ? marginal->calcLogPosteriors(points) : surface.calcLogPosteriors(points);
+      },
+      propose(surface, landscape, drawn),
+      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, makeOptions());
+}
+
+}  // namespace
+
+/// The basins as they are seen in the first `drawn` coordinates alone.
+std::vector<Basin> projectBasins(std::vector<Basin> basins, Index drawn) {
+  for (Basin& basin : basins) {
+    basin.local.at = VectorXd(basin.local.at.head(drawn));
+    basin.covariance = MatrixXd(basin.covariance.topLeftCorner(drawn, drawn));
+  }
+  return basins;
+}
+
+AdaptiveDraws drawPosterior(MisfitSurface& surface, Landscape& landscape, Index kept,
+                            const PosteriorDrawOptions& options) {
+  const bool has_many = kept > kManyUnknown;
+  if (has_many || (surface.getDimensions() > kFewUnknown && areOneBasin(surface, landscape.basins))) {
+    AdaptiveDraws drawn = sampleLinearized(surface, landscape.basins.front(), options.draws, options.seed);
+    const bool is_good = drawn.isReliable() && drawn.effective_sample_size >= kEnough * options.draws &&
+                         drawn.pareto_shape <= importance::AdaptiveOptions().good_pareto_shape;
+    if (has_many || is_good) {
+      drawn.draws.points = MatrixXd(drawn.draws.points.topRows(kept));
+      return drawn;
+    }
+  }
+  landscape.valleys = followValleys(surface, landscape.basins);
+  return drawMixtures(surface, landscape, kept, options);
+}
+
+AdaptiveDraws drawAlongWalks(MisfitSurface& surface, const std::vector<Basin>& basins,
+                             const PosteriorDrawOptions& options) {
+  constexpr int kChains = 48, kSteps = 48;
+  PosteriorDrawOptions more = options;
+  more.draws *= 2;
+  MatrixXd starts(surface.getDimensions(), kChains);
+  for (Index k = 0; k < kChains; ++k) {
+    starts.col(k) = basins[static_cast<std::size_t>(k) % basins.size()].local.at;
+  }
+  const MatrixXd walked = walkPosterior(surface, starts, kSteps, options.seed);
+  Numbers numbers(surface.getDimensions(), more);
+  importance::AdaptiveOptions adaptive = makeOptions();
+  adaptive.local = [&surface](const MatrixXd& points, const MatrixXd& lower) {
+    return linearizeAt(surface, points, lower);
+  };
+  return importance::sampleAdaptively(
+      [&](const MatrixXd& points) { return surface.calcLogPosteriors(points); },
+      importance::coverDraws(importance::weigh(walked, VectorXd::Zero(walked.cols())), numbers.get(0).centers,
+                             adaptive.local),
+      [&](int round) -> const RoundNumbers& { return numbers.get(round + 1); }, adaptive);
+}
+
+}  // namespace twinmap
