@@ -11,6 +11,7 @@
 #include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/measurement_start.hpp"
+#include "framework/data/measurement/recording/recorded_times.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 
@@ -199,6 +200,11 @@ AvailableFeatures MeasurementReader::readSamples(const Table& table, std::option
     requireAll(found.features, extractor_, table.source);
   }
   return found;
+}
+
+std::optional<ExperimentSpec> MeasurementReader::followTimes(const Table& table,
+                                                             std::optional<double> start) const {
+  return followRecordedTimes(experiment_, layout_, table, getStart(table, start));
 }
 
 Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optional<double> start) const {
