@@ -124,6 +124,9 @@ ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
     const Eigen::MatrixXd lower = linalg::calcCholesky(at.local.calcHessian()).lower;
     const VectorXd way = linalg::solveCholesky(lower, at.local.descent).cwiseProduct(at.half_widths);
     const double before = at.local.misfit;
+    if (!way.allFinite()) {
+      return {};  // of a misfit beyond numbers
+    }
     double share = 1.0;
     for (int halving = 0; halving < kHalvings; ++halving, share *= 0.5) {
       ClockedFit next = fit;
