@@ -54,7 +54,9 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
         "features are taken at the times of the recording, between which nothing is interpolated");
     return inferred;
   }
-  return infer(table, start, reader_.readAvailableFeatures(table, start), known);
+  const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
+  reader_.warnOfInterpolation(table, start);
+  return infer(table, start, found, known);
 }
 
 DirectInference::AtRecordedTimes* DirectInference::followTimes(const Table& table,

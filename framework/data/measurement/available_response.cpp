@@ -235,7 +235,7 @@ AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec,
   if (layout.times.size() == 0) {
     return available;
   }
-  Recording recording(table, spec, start);
+  RecordedColumns recording(table, spec, start);
   const double spacing = interval.value_or(calcSmallestStep(layout.times));
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     const auto o = static_cast<std::size_t>(output);

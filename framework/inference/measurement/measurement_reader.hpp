@@ -74,6 +74,9 @@ class MeasurementReader {
   /// interpolated.
   std::optional<ExperimentSpec> followTimes(const Table& table, std::optional<double> start) const;
 
+  /// Warns of outputs whose interpolation errs by more than a tenth of their noise (calcInterpolationError).
+  void warnOfInterpolation(const Table& table, std::optional<double> start) const;
+
   /// d: requireExcitation(), readResponse() and extractFeatures().
   Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;
 

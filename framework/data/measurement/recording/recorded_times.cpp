@@ -145,7 +145,7 @@ std::optional<ExperimentSpec> followRecordedTimes(const ExperimentSpec& experime
   if (experiment.model.source || !areSamples(experiment.features)) {
     return std::nullopt;
   }
-  Recording recording(table, experiment.measurement, start);
+  RecordedColumns recording(table, experiment.measurement, start);
   std::vector<FeatureSpec> features;
   bool differs = false;
   for (std::size_t o = 0; o < layout.output_names.size(); ++o) {

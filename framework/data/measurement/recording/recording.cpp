@@ -39,7 +39,7 @@ std::vector<std::string> listOwnColumns(const ColumnSpec& column, const TimeBase
 
 }  // namespace
 
-const ClockedRows& Recording::getRows(const std::string& output) {
+const ClockedRows& RecordedColumns::getRows(const std::string& output) {
   const std::optional<std::filesystem::path> file = findOwnFile(spec_, output, table_.source);
   const TimeBase base = makeTimeBase(spec_, output, start_);
   const std::string name = file ? file->string() : "", clock = describeClock(base);
@@ -56,11 +56,11 @@ const ClockedRows& Recording::getRows(const std::string& output) {
   return known_.back();
 }
 
-bool Recording::hasColumn(const Table& rows, const std::string& output) const {
+bool RecordedColumns::hasColumn(const Table& rows, const std::string& output) const {
   return findColumn(rows, findColumnSpec(spec_, output).name) != nullptr;
 }
 
-ClockedRows Recording::sort(const Table& table, const TimeBase& base, const std::string& column) {
+ClockedRows RecordedColumns::sort(const Table& table, const TimeBase& base, const std::string& column) {
   const Index rows = getColumn(table, column).values.size();
   const VectorXd times = readUnorderedTimes(table, base, rows);
   requireClock(table, base, times);

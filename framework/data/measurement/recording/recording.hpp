@@ -20,10 +20,10 @@ struct ClockedRows {
 };
 
 /// A recording of one file or several, each column in the rows of its clock.
-class Recording {
+class RecordedColumns {
  public:
   /// Table and spec must outlive the object; start: the time in the table (s) that is the model's 0.
-  Recording(const Table& table, const MeasurementSpec& spec, double start)
+  RecordedColumns(const Table& table, const MeasurementSpec& spec, double start)
       : table_(table), spec_(spec), start_(start) {}
 
   /// Those that hold an output; sorted, rows without a time left out. Reads a file of its own. Throws
