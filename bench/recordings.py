@@ -105,6 +105,30 @@ FAULTS = {
 NOISE_SCALE = {"noise_twice": 2.0, "noise_third": 1.0 / 3.0}
 
 
+def jitter(grid, rng):
+    """Steps of 0.7 to 1.4 of those that were meant."""
+    stamps = np.cumsum(np.diff(grid, prepend=0.0) * rng.uniform(0.7, 1.4, len(grid)) / 1.05)
+    return stamps, stamps
+
+
+def slip(grid, rng):
+    """Half a step late from the middle on."""
+    step = grid[1] - grid[0]
+    return grid, grid - 0.5 * step * (grid >= grid[int(rng.uniform(0.3, 0.7) * len(grid))])
+
+
+# Stamps of the samples, and the times at which they are taken, where these are not the times of the features.
+CLOCKS = {
+    "between_samples": lambda grid, rng: (grid - 0.37 * grid[0], grid - 0.37 * grid[0]),
+    "jittered": jitter,
+    "clock_late": lambda grid, rng: (grid, grid - 2.3 * (grid[1] - grid[0])),
+    "clock_fast": lambda grid, rng: (grid, grid / 1.003),
+    "clock_slips": slip,
+}
+FAULTS.update({name: keep for name in CLOCKS})
+FAULTS["spikes_noise_unknown"] = add_spikes
+
+
 def draw(parameters, rng):
     return {name: rng.uniform(*map(float, spec["bounds"])) for name, spec in (parameters or {}).items()}
 
@@ -116,6 +140,17 @@ def call(twinmap, *arguments, text=None, may_fail=False):
     return done.stdout
 
 
+def describe_times(spec, fault, rng):
+    """Stamps, and the features that are simulated there, as an override."""
+    (samples,) = [feature["samples"] for feature in spec["features"]]
+    grid = samples["start"] + samples["interval"] * np.arange(samples["count"])
+    stamps, times = CLOCKS[fault](grid, rng)
+    kept = (times > 0) & (times <= float(spec["simulation"]["duration"]))
+    one = "{{samples: {{outputs: [{}], start: {!r}, interval: 1, count: 1}}}}"
+    blocks = [one.format(", ".join(samples["outputs"]), float(round(t, 12))) for t in times[kept]]
+    return stamps[kept], f"features=[{', '.join(blocks)}]"
+
+
 def simulate(twinmap, file, spec, fault, rng):
     """A recording and the parameters that it is of."""
     truth = draw(spec["parameters"], rng)
@@ -123,14 +158,18 @@ def simulate(twinmap, file, spec, fault, rng):
     values += [f"nuisance.{name}={value!r}" for name, value in draw(spec.get("nuisance"), rng).items()]
     values += [f"seed={rng.integers(1 << 31)}", f"noise.scale={NOISE_SCALE.get(fault, 1.0)}"]
     noise = [] if fault.startswith("rho") else ["--noise"]
-    text = call(twinmap, "simulate", file, *noise, *values)
+    stamps, features = describe_times(spec, fault, rng) if fault in CLOCKS else (None, None)
+    text = call(twinmap, "simulate", file, *noise, *values, *([features] if features else []))
     noise_sizes = {name: float(value) for name, value in spec["noise"]["stddev"].items()}
-    return Recording(text, noise_sizes), truth
+    recording = Recording(text, noise_sizes)
+    if stamps is not None:
+        recording.values[:, 0] = stamps
+    return recording, truth
 
 
 def describe_sensors(spec, fault, recordings):
     """What the file says of the sensors, as overrides."""
-    if fault == "noise_unknown":
+    if fault.endswith("noise_unknown"):
         return [f"noise.stddev.{name}=unknown" for name in spec["noise"]["stddev"]]
     if fault != "clipped":
         return []

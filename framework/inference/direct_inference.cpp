@@ -1,10 +1,40 @@
 #include "framework/inference/direct_inference.hpp"
 
+#include <algorithm>
+
 #include "framework/base/text/source_location.hpp"
+#include "framework/data/measurement/recording/recorded_times.hpp"
+#include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
+#include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {
+namespace {
+
+/// Of samples alone.
+bool areSame(const std::vector<FeatureSpec>& features, const std::vector<FeatureSpec>& others) {
+  return std::equal(features.begin(), features.end(), others.begin(), others.end(),
+                    [](const FeatureSpec& feature, const FeatureSpec& other) {
+                      const auto &a = std::get<SamplesFeatureSpec>(feature),
+                                 &b = std::get<SamplesFeatureSpec>(other);
+                      return a.outputs.front().text == b.outputs.front().text && a.start == b.start &&
+                             a.interval == b.interval && a.count == b.count;
+                    });
+}
+
+}  // namespace
+
+/// An inference whose features are at the times of tables.
+struct DirectInference::AtRecordedTimes {
+  AtRecordedTimes(ExperimentSpec experiment, int draws)
+      : reader(std::move(experiment)), inference(reader, draws, SimulatorRefiner::Model::kTrusted) {}
+
+  const MeasurementReader reader;
+  DirectInference inference;
+};
+
+DirectInference::~DirectInference() = default;
 
 DirectInference::DirectInference(const MeasurementReader& reader, int draws, SimulatorRefiner::Model model)
     : reader_(reader),
@@ -17,7 +47,28 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws, Sim
 
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
                                            const Eigen::VectorXd& known) {
-  return infer(table, start, reader_.readAvailableFeatures(table, start), known);
+  if (AtRecordedTimes* followed = followTimes(table, start)) {
+    InferredMeasurement inferred =
+        followed->inference.infer(table, start, followed->reader.readAvailableFeatures(table, start), known);
+    inferred.remarks.emplace_back(
+        "features are taken at the times of the recording, between which nothing is interpolated");
+    return inferred;
+  }
+  const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
+  reader_.warnOfInterpolation(table, start);
+  return infer(table, start, found, known);
+}
+
+DirectInference::AtRecordedTimes* DirectInference::followTimes(const Table& table,
+                                                               std::optional<double> start) {
+  std::optional<ExperimentSpec> experiment = reader_.followTimes(table, start);
+  if (!experiment) {
+    return nullptr;
+  }
+  if (!followed_ || !areSame(followed_->reader.getExperiment().features, experiment->features)) {
+    followed_ = std::make_unique<AtRecordedTimes>(std::move(*experiment), options_.draws);
+  }
+  return followed_.get();
 }
 
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
@@ -32,8 +83,36 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   inferred.source = table.source;
   inferred.start = reader_.getStart(table, start);
   inferred.left_out = found.remarks;
+  if (tryClock(found, known, inferred)) {
+    return inferred;
+  }
   inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
   return inferred;
+}
+
+bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                               InferredMeasurement& inferred) const {
+  constexpr Eigen::Index kFewest = 20;  // samples, of which a clock can be told
+  const ExperimentSpec& experiment = reader_.getExperiment();
+  const std::vector<std::string> statuses = listStatuses(inferred);
+  if (statuses.empty() || statuses.front() != toString(TrustStatus::kModelMismatch) || !inferred.posterior ||
+      !inferred.posterior->fit || !inferred.posterior->fit->isSimulated() || found.stated.isGiven() ||
+      experiment.model.source || !areSamples(experiment.features) || !simulator_.samplesFast() ||
+      static_cast<Eigen::Index>(found.available.size()) < kFewest) {
+    return false;
+  }
+  const NoiseHypothesis noise = simulator_.describeNoise(found.clipped);
+  std::optional<ClockedMeasurement> clocked =
+      findClockFaults({experiment, reader_.getLayout(), found.features, known, noise},
+                      inferred.posterior->fit->best, options_);
+  if (!clocked) {
+    return false;
+  }
+  inferred.trust.reset();
+  inferred.posterior = std::move(clocked->posterior);
+  inferred.clock_faults = std::move(clocked->faults);
+  inferred.ridges = clocked->simulator->findRidges(inferred.posterior->estimate.draws, known);
+  return true;
 }
 
 std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,

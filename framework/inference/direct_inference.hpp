@@ -14,13 +14,17 @@ class DirectInference final : public MeasurementInference {
   explicit DirectInference(const MeasurementReader& reader, int draws = SimulatorPosteriorOptions{}.draws,
                            SimulatorRefiner::Model model = SimulatorRefiner::Model::kToBeChecked);
 
+  ~DirectInference() override;
+
   const MeasurementReader& getReader() const override { return reader_; }
   bool refines() const override { return false; }
   bool samplesPosteriors() const override { return false; }
   MissingCells getMissingCells() const override { return MissingCells::kKeep; }
 
-  /// Samples that the table lacks are left out of the likelihood (MeasurementReader::readAvailableFeatures);
-  /// standard deviations that it states go before the experiment's.
+  /// Where samples would be interpolated, features are taken at the times of the table
+  /// (MeasurementReader::followTimes). Samples that the table lacks are left out of the likelihood
+  /// (MeasurementReader::readAvailableFeatures); standard deviations that it states go before the
+  /// experiment's.
   InferredMeasurement infer(const Table& table, std::optional<double> start,
                             const Eigen::VectorXd& known) override;
   /// From what the reader found in the table.
@@ -29,7 +33,17 @@ class DirectInference final : public MeasurementInference {
   /// Cost: that of samplePosterior().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
+  /// Whether faults of the recorder's clock explain a model_mismatch (findClockFaults); then they are
+  /// what was inferred. Its posterior is the simulator's.
+  bool tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                InferredMeasurement& inferred) const;
+
  private:
+  struct AtRecordedTimes;
+
+  /// What infers at the times of a table, where it would be interpolated; null where not.
+  AtRecordedTimes* followTimes(const Table& table, std::optional<double> start);
+
   InferredMeasurement infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
                             const Eigen::VectorXd& known, const std::vector<ClippedSample>& clipped) const;
 
@@ -42,6 +56,7 @@ class DirectInference final : public MeasurementInference {
   SimulatorPosteriorOptions options_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
   std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
+  std::unique_ptr<AtRecordedTimes> followed_;            // of the last table that was interpolated
 };
 
 }  // namespace twinmap

@@ -9,6 +9,7 @@
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/estimation/trained/online_model.hpp"
+#include "framework/inference/clock/clock_fault.hpp"
 #include "framework/inference/measurement/measurement_reader.hpp"
 #include "framework/inference/posterior_estimate.hpp"
 #include "framework/inference/stated_prior.hpp"
@@ -29,6 +30,7 @@ struct InferredMeasurement {
   std::string source;                   ///< the file
   std::string run{};                    ///< what it was inferred by, as the user calls it; "" if not known
   double start = 0.0;                   ///< time in the file that is 0 of the model, s
+  std::vector<std::string> remarks{};   ///< how it was read, a phrase each
   std::vector<std::string> left_out{};  ///< what of the recording is missing and why, a phrase each
   Estimate by_estimator;                ///< not given where there is no trained estimator
   bool estimator_is_calibrated = true;  ///< isCalibrated()
@@ -38,6 +40,7 @@ struct InferredMeasurement {
   /// u x n: the separate places that fit by the estimator, in the parameters' units, the likeliest first;
   /// one, or none where the estimator does not look for them.
   Eigen::MatrixXd basins{};
+  std::vector<ClockFault> clock_faults{};  ///< of the recorder, inferred with the parameters
   std::string fault{};  ///< of the measurement, that explains a gross misfit (explainByFault()); "" of none
   std::optional<MissingTerm> missing{};  ///< where that was asked for, and something was found
   bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted

@@ -213,8 +213,24 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
   return *found;
 }
 
-MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
+const JointInferrer::Member& JointInferrer::follow(const Recording& recording) const {
   const Member& member = find(recording.trial);
+  if (const auto known = followed_.find(recording.label); known != followed_.end()) {
+    return known->second;
+  }
+  std::optional<ExperimentSpec> experiment = member.reader->followTimes(*recording.table, recording.start);
+  if (!experiment) {
+    return member;
+  }
+  auto reader = std::make_unique<const MeasurementReader>(std::move(*experiment));
+  auto simulator = std::make_unique<const SimulatorRefiner>(reader->getExperiment(), reader->getLayout());
+  return followed_
+      .emplace(recording.label, Member{member.name, std::move(reader), std::move(simulator), member.known})
+      .first->second;
+}
+
+MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
+  const Member& member = follow(recording);
   const AvailableFeatures found = member.reader->readAvailableFeatures(*recording.table, recording.start);
   requireNoneStated(found.stated, recording.table->source);
   MeasuredTrial trial = member.simulator->makeTrial(found.features, member.known);
@@ -223,7 +239,7 @@ MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
 }
 
 RecordingInference JointInferrer::inferAlone(const Recording& recording) const {
-  const Member& member = find(recording.trial);
+  const Member& member = follow(recording);
   const std::vector<ParameterSpec>& unknown = member.simulator->getUnknown();
   const auto u = static_cast<Index>(unknown.size());
   RecordingInference alone{recording.label, {}, {}};
@@ -257,6 +273,7 @@ PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& record
 }
 
 JointInference JointInferrer::infer(const std::vector<Recording>& recordings) const {
+  followed_.clear();
   JointInference inferred;
   for (const Recording& recording : recordings) {
     inferred.alone.push_back(inferAlone(recording));

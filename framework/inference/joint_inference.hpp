@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -89,11 +90,14 @@ class JointInferrer {
   };
 
   const Member& find(const std::string& trial) const;
+  /// That of its trial, with the features at its own times where it would be interpolated.
+  const Member& follow(const Recording& recording) const;
   MeasuredTrial makeTrial(const Recording& recording) const;
   RecordingInference inferAlone(const Recording& recording) const;
   PosteriorProblem makeProblem(const std::vector<Recording>& recordings) const;
 
   std::vector<Member> members_;
+  mutable std::map<std::string, Member> followed_;  // by the labels of the recordings that are inferred
   SimulatorPosteriorOptions options_, joint_options_;
 };
 

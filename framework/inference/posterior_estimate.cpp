@@ -111,6 +111,9 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
     fit.degrees = tested.degrees;
     fit.explained = fit.chi_square < calcChiSquareLimit(fit.degrees);
     fit.test = testResidual(tested.residual, tested.degrees, tested.infos);
+    if (fit.test.largest >= 0) {
+      fit.largest_feature = tested.infos[static_cast<std::size_t>(fit.test.largest)].name;
+    }
     for (const Index i : posterior.beyond) {
       fit.beyond.push_back(unknown[static_cast<std::size_t>(i)].name.text);
     }

@@ -37,6 +37,7 @@ struct SimulatorFit {
   bool explained = false;                  ///< SimulatorPosterior::isExplained()
   Eigen::VectorXd residual;                ///< whitened
   ResidualTest test;
+  std::string largest_feature{};  ///< its name
   std::vector<std::string>
       outliers{};                     ///< features that are not noise and count for nothing, with their size
   std::vector<NoiseReport> noise{};   ///< of the outputs of which something was inferred

@@ -84,12 +84,19 @@ SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment,
 
 SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
                                    Model model, const StatedNoise& stated)
+    : SimulatorRefiner(experiment, layout,
+                       model == Model::kTrusted
+                           ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
+                           : makeSimulator(experiment.model, layout.times, layout.modes),
+                       stated) {}
+
+SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
+                                   std::unique_ptr<Simulator> simulator, const StatedNoise& stated)
     : model_(experiment.model),
       output_noise_(experiment.noise.stddev),
       noise_scale_(experiment.noise.scale),
       extractor_(makeExtractor(experiment, layout)),
-      simulator_(model == Model::kTrusted ? makeTrustedSimulator(experiment.model, layout.times, layout.modes)
-                                          : makeSimulator(experiment.model, layout.times, layout.modes)),
+      simulator_(std::move(simulator)),
       noise_(extractor_, makeNoise(experiment.noise, layout, stated.rows), experiment.seed, stated.features),
       stated_noise_(findUnknownNoise(experiment.noise, layout)),
       wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),

@@ -25,6 +25,9 @@ class SimulatorRefiner {
   /// the measurement (ResponseNoise::replace, FeatureNoise).
   SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
                    Model model = Model::kTrusted, const StatedNoise& stated = {});
+  /// Of a simulator that was made elsewhere, of these times and unknown parameters.
+  SimulatorRefiner(const ExperimentSpec& experiment, const ResponseLayout& layout,
+                   std::unique_ptr<Simulator> simulator, const StatedNoise& stated = {});
   SimulatorRefiner(const SimulatorRefiner&) = delete;
   SimulatorRefiner& operator=(const SimulatorRefiner&) = delete;
 

@@ -59,6 +59,9 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   if (inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
     statuses.emplace_back("outliers");
   }
+  if (!inferred.clock_faults.empty()) {
+    statuses.emplace_back("clock_fault");
+  }
   if (inferred.posterior->fit) {
     addNoise(*inferred.posterior->fit, statuses);
   }

@@ -28,7 +28,8 @@ bool isUncalibrated(const InferredMeasurement& inferred);
 /// Names of all that is to be said against an estimate, the most severe first: "not_simulated"; what the
 /// trust model says or, without one, "model_mismatch" (testResidual, below kMismatchLevel) and
 /// "outliers" (samples that are not noise and were left out), "noise_larger" or "noise_smaller" than stated
-/// (and inferred), "noise_coloured" (its autocorrelation is inferred), "sensor_offset" (inferred);
+/// (and inferred), "clock_fault" (of the recorder,
+/// inferred), "noise_coloured" (its autocorrelation is inferred), "sensor_offset" (inferred);
 /// "uninformative"; "multimodal" where several values that lie apart fit; "nonlinear" or
 /// "not_refined" where a refinement was tried and not accepted; "unreliable" where the simulator's posterior
 /// was sampled and its draws do not stand for it; "uncalibrated"; "estimator_limited". Of the simulator's

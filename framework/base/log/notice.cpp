@@ -34,6 +34,11 @@ const std::vector<NoticeText> kStatuses{
     {Notice::kOutliers, "outliers", true, kInfo, "{0} not noise and left out: {1}",
      "Look at these samples of the recording; the estimate does not rest on them.",
      "A spike of a sensor or a lost packet; without these few samples the model explains the recording."},
+    {Notice::kClockFault, "clock_fault", true, kDegraded, "{0}; the intervals follow it",
+     "Look at the recorder, its trigger and sample rate; if it is sound, ask what the model lacks: twinmap "
+     "diagnose FILE RECORDINGS.",
+     "The residuals are noise where the times of the recording are corrected like this; a little friction or "
+     "damping that the model lacks may look alike."},
     {Notice::kNoiseLarger, "noise_larger", true, kDegraded,
      "the noise is {0:.3g} times what the file states; the intervals are those of the noise found",
      "State the noise that was found: noise.stddev.",

@@ -20,6 +20,7 @@ enum class Notice {
   kAtBounds,
   kUninformative,
   kOutliers,
+  kClockFault,
   kNoiseLarger,
   kNoiseSmaller,
   kNoiseColoured,

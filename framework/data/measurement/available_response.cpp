@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <list>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/lagrange.hpp"
 #include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
-#include "framework/data/measurement/row_order.hpp"
+#include "framework/data/measurement/recording/recording.hpp"
 #include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {
@@ -21,103 +20,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-/// The table's rows in that order; columns of other lengths stay as they are, which is found later.
-Table takeRows(const Table& table, Index count, const std::vector<Index>& rows) {
-  Table taken = table;
-  for (Column& column : taken.columns) {
-    if (column.values.size() == count) {
-      column.values = VectorXd(column.values(rows));
-    }
-  }
-  return taken;
-}
-
-/// Rows of one clock, in the order of their times.
-struct ClockedRows {
-  std::string file, clock;  ///< what tells them from others
-  double start = 0.0;       ///< s; its time that is the model's 0
-  Table rows;
-  VectorXd times;  ///< s; 0 is the model's
-};
-
-std::string describeClock(const TimeBase& base) {
-  return fmt::format("{} {} {}", base.time ? toText(*base.time) : "", base.sample_rate.value_or(0.0),
-                     toText(base.start));
-}
-
-/// A recording of one file or several, each column in the rows of its clock.
-class Recording {
- public:
-  Recording(const Table& table, const MeasurementSpec& spec, double start)
-      : table_(table), spec_(spec), start_(start) {}
-
-  const ClockedRows& getRows(const std::string& output) {
-    const std::optional<std::filesystem::path> file = findOwnFile(spec_, output, table_.source);
-    const TimeBase base = makeTimeBase(spec_, output, start_);
-    const std::string name = file ? file->string() : "", clock = describeClock(base);
-    for (const ClockedRows& known : known_) {
-      if (known.file == name && known.clock == clock && hasColumn(known.rows, output)) {
-        return known;
-      }
-    }
-    const ColumnSpec column = findColumnSpec(spec_, output);
-    const Table own = file ? readTable(*file, listOwnColumns(column, base), MissingCells::kKeep) : Table();
-    known_.push_back(sort(file ? own : table_, base, column.name));
-    known_.back().file = name;
-    known_.back().clock = clock;
-    return known_.back();
-  }
-
-  std::vector<std::string> takeRemarks() { return std::move(remarks_); }
-
- private:
-  bool hasColumn(const Table& rows, const std::string& output) const {
-    return findColumn(rows, findColumnSpec(spec_, output).name) != nullptr;
-  }
-
-  static std::vector<std::string> listOwnColumns(const ColumnSpec& column, const TimeBase& base) {
-    std::vector<std::string> names = listTimeColumns(base);
-    names.push_back(column.name);
-    return names;
-  }
-
-  ClockedRows sort(const Table& table, const TimeBase& base, const std::string& column) {
-    const Index rows = getColumn(table, column).values.size();
-    const VectorXd times = readUnorderedTimes(table, base, rows);
-    requireClock(table, base, times);
-    RowOrder order = sortRows(times);
-    for (std::string& remark : order.remarks) {
-      if (std::find(remarks_.begin(), remarks_.end(), remark) == remarks_.end()) {
-        remarks_.push_back(std::move(remark));
-      }
-    }
-    ClockedRows sorted{"", "", base.start, takeRows(table, rows, order.rows), {}};
-    sorted.times = readUnorderedTimes(sorted.rows, base, static_cast<Index>(order.rows.size()));
-    return sorted;
-  }
-
-  const Table& table_;
-  const MeasurementSpec& spec_;
-  const double start_;
-  std::list<ClockedRows> known_;  // whose addresses stay
-  std::vector<std::string> remarks_;
-};
-
-/// The samples of one column, those that are there.
-struct Samples {
-  VectorXd times, values;
-};
-
-Samples takeSamples(const VectorXd& times, const VectorXd& values) {
-  std::vector<Index> there;
-  for (Index i = 0; i < values.size(); ++i) {
-    if (std::isfinite(values[i])) {
-      there.push_back(i);
-    }
-  }
-  return {times(there), values(there)};
-}
 
 /// What a column says at a needed time.
 struct FoundSample {
@@ -333,16 +235,14 @@ AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec,
   if (layout.times.size() == 0) {
     return available;
   }
-  Recording recording(table, spec, start);
+  RecordedColumns recording(table, spec, start);
   const double spacing = interval.value_or(calcSmallestStep(layout.times));
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     const auto o = static_cast<std::size_t>(output);
     const std::string& name = layout.output_names[o];
     const std::string column = findColumnSpec(spec, name).name;
     const ClockedRows& clocked = recording.getRows(name);
-    requireLength(clocked.rows, getColumn(clocked.rows, column), clocked.times.size());
-    const Samples samples =
-        takeSamples(clocked.times, readOutput(clocked.rows, spec, layout, o, clocked.times, 0));
+    const Samples samples = readSamples(clocked, spec, layout, o);
     const std::optional<Bounds> range = findRange(spec, name);
     addOutput(clocked.rows, column, SampleFinder(samples, clocked.start, spacing, range), range, layout,
               output, available);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "framework/data/measurement/row_order.hpp"
+#include "framework/data/measurement/recording/row_order.hpp"
 #include "framework/experiment/expression/units.hpp"
 
 namespace twinmap {

@@ -143,12 +143,13 @@ VectorXd MisfitSurface::calcLosses(const MatrixXd& points) {
       sums += part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
       continue;
     }
-    std::vector<SampleStatus> statuses;
-    const MatrixXd residuals = part.misfit->simulateResiduals(own, statuses);
-    for (Index i = 0; i < points.cols(); ++i) {
-      sums[i] += statuses[static_cast<std::size_t>(i)].ok ? part.losses[part.window].calc(residuals.col(i))
-                                                          : std::numeric_limits<double>::infinity();
-    }
+    sums += part.misfit->sumUp(own, [&](const MatrixXd& residuals) {
+      VectorXd losses(residuals.cols());
+      for (Index i = 0; i < residuals.cols(); ++i) {
+        losses[i] = part.losses[part.window].calc(residuals.col(i));
+      }
+      return losses;
+    });
   }
   return sums;
 }

@@ -71,6 +71,10 @@ bool ResidualTest::isPlausible() const {
 
 ResidualTest testResidual(const VectorXd& residual, double degrees, const std::vector<FeatureInfo>& infos) {
   ResidualTest test;
+  if (residual.size() == 0) {  // all were outliers
+    test.chi_square_p = 0.0;
+    return test;
+  }
   test.chi_square_p = calcUpperTail(residual.squaredNorm(), degrees);
   // what is left of a measurement without noise is the integration's error: below a hundredth of the noise
   // it moves no parameter by more than a seventh of its standard deviation, were it the same in 200 samples

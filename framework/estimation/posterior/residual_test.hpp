@@ -26,10 +26,10 @@ struct ResidualTest {
 /// Below this p-value a measurement is a model_mismatch: of good ones 1 % are called so.
 constexpr double kMismatchLevel = 0.01;
 
-/// residual: whitened, one for each of `infos`; degrees: of freedom of its sum of squares. Whiteness is
-/// tested within each output whose samples have times, over up to ten lags, where there are at least 20
-/// samples and the residual is not below a hundredth of the noise; the parameters that were fitted make
-/// neighbours a little less alike, so that the test is on the safe side.
+/// residual: whitened, one for each of `infos` (none: not plausible); degrees: of freedom of its sum of
+/// squares. Whiteness is tested within each output whose samples have times, over up to ten lags, where there
+/// are at least 20 samples and the residual is not below a hundredth of the noise; the parameters that were
+/// fitted make neighbours a little less alike, so that the test is on the safe side.
 ResidualTest testResidual(const Eigen::VectorXd& residual, double degrees,
                           const std::vector<FeatureInfo>& infos);
 

@@ -122,19 +122,32 @@ MatrixXd Misfit::makePoints(const MatrixXd& points) const {
 }
 
 std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
-  const MatrixXd sampled = makePoints(points);
   const int neighbours = countNeighbours(model_.getUnknown().size());
+  const Index most = countTogether(neighbours);
+  std::vector<LocalMisfit> all;
+  for (Index first = 0; first < points.cols(); first += most) {
+    linearizeBatch(points.middleCols(first, std::min(most, points.cols() - first)), neighbours, all);
+  }
+  return all;
+}
+
+Index Misfit::countTogether(int responses) const {
+  constexpr Index kMostNumbers = Index{1} << 25;  // 256 MiB
+  return std::max<Index>(
+      1, kMostNumbers / (responses * std::max<Index>(1, simulator_.getLayout().getRowCount())));
+}
+
+void Misfit::linearizeBatch(const MatrixXd& points, int neighbours, std::vector<LocalMisfit>& all) {
+  const MatrixXd sampled = makePoints(points);
   MatrixXd stencils(simulator_.getLayout().getRowCount() * neighbours, points.cols());
   std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
   simulateStencils(simulator_, model_.getUnknown(), sampled, stencils, statuses.data());
   simulations_ += static_cast<int>(points.cols()) * (simulator_.hasDerivatives() ? 1 : neighbours);
-  std::vector<LocalMisfit> local;
   for (Index i = 0; i < points.cols(); ++i) {
-    local.push_back(makeLocalMisfit(points.col(i),
-                                    makeLocalModel(model_.getExtractor(), model_.getUnknown(), sampled.col(i),
-                                                   stencils.col(i), statuses[static_cast<std::size_t>(i)])));
+    all.push_back(makeLocalMisfit(points.col(i),
+                                  makeLocalModel(model_.getExtractor(), model_.getUnknown(), sampled.col(i),
+                                                 stencils.col(i), statuses[static_cast<std::size_t>(i)])));
   }
-  return local;
 }
 
 LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local) {
@@ -187,14 +200,26 @@ ProbedMisfit Misfit::probe(const VectorXd& at, const MatrixXd& ways) {
 }
 
 VectorXd Misfit::evaluate(const MatrixXd& points) {
-  std::vector<SampleStatus> statuses;
-  VectorXd misfits = addPrior(simulateResiduals(points, statuses).colwise().squaredNorm(), points);
-  for (Index i = 0; i < points.cols(); ++i) {
-    if (!statuses[static_cast<std::size_t>(i)].ok || !std::isfinite(misfits[i])) {
-      misfits[i] = std::numeric_limits<double>::infinity();
+  return addPrior(
+      sumUp(points, [](const MatrixXd& residuals) { return residuals.colwise().squaredNorm().transpose(); }),
+      points);
+}
+
+VectorXd Misfit::sumUp(const MatrixXd& points, const std::function<VectorXd(const MatrixXd&)>& calcLosses) {
+  const Index most = countTogether(1);
+  VectorXd losses(points.cols());
+  for (Index first = 0; first < points.cols(); first += most) {
+    std::vector<SampleStatus> statuses;
+    const Index count = std::min(most, points.cols() - first);
+    losses.segment(first, count) = calcLosses(simulateResiduals(points.middleCols(first, count), statuses));
+    for (Index i = 0; i < count; ++i) {
+      double& loss = losses[first + i];
+      loss = statuses[static_cast<std::size_t>(i)].ok && std::isfinite(loss)
+                 ? loss
+                 : std::numeric_limits<double>::infinity();
     }
   }
-  return misfits;
+  return losses;
 }
 
 }  // namespace twinmap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
@@ -66,7 +67,7 @@ class Misfit {
 
   /// By exact derivatives where the simulator has them (simulateStencils).
   LocalMisfit linearize(const Eigen::VectorXd& at) { return linearizeAll(at).front(); }
-  /// At all columns of `points` (s x n), simulated as one batch.
+  /// At all columns of `points` (s x n), simulated in batches of at most 256 MiB.
   std::vector<LocalMisfit> linearizeAll(const Eigen::MatrixXd& points);
 
   /// Whether four points are linearised about as fast as one: exact derivatives in lanes.
@@ -80,11 +81,18 @@ class Misfit {
   /// linearize().
   Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
 
-  /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
-  /// fails. After linearize().
+  /// The misfits at the columns of `points` (s x n), simulated in batches of at most 256 MiB; infinity where
+  /// a simulation fails. After linearize().
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points);
 
+  /// The same of other losses, of whitened residuals (k x n), without the prior.
+  Eigen::VectorXd sumUp(const Eigen::MatrixXd& points,
+                        const std::function<Eigen::VectorXd(const Eigen::MatrixXd&)>& calcLosses);
+
  private:
+  /// Points whose responses, so many each, are held together.
+  Eigen::Index countTogether(int responses) const;
+  void linearizeBatch(const Eigen::MatrixXd& points, int neighbours, std::vector<LocalMisfit>& all);
   const NoiseWhitener& getWhitener() const;
   PriorMisfit calcBeside(const Eigen::VectorXd& at) const;
   LocalMisfit combine(const SampleStatus& status, const Eigen::VectorXd& at, const Eigen::VectorXd& residual,

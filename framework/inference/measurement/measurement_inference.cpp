@@ -7,6 +7,7 @@ InferredMeasurement MeasurementInference::infer(const Table& table, std::optiona
   const MeasurementReader& reader = getReader();
   reader.requireExcitation(table, start);
   const Eigen::VectorXd response = reader.readResponse(table, start);
+  reader.warnOfInterpolation(table, start);
   return inferResponse(table, start, response, extractFeatures(reader.getExtractor(), response, table.source),
                        known);
 }

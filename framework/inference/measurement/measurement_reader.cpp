@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/base/log/log.hpp"
@@ -11,6 +12,9 @@
 #include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/measurement_start.hpp"
+#include "framework/data/measurement/recording/interpolation_error.hpp"
+#include "framework/data/measurement/recording/recorded_times.hpp"
+#include "framework/data/measurement/recording/recording.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 
@@ -199,6 +203,40 @@ AvailableFeatures MeasurementReader::readSamples(const Table& table, std::option
     requireAll(found.features, extractor_, table.source);
   }
   return found;
+}
+
+void MeasurementReader::warnOfInterpolation(const Table& table, std::optional<double> start) const {
+  constexpr double kMatters = 0.1;  // of the noise: of a hundred samples a standard deviation of a parameter
+  if (layout_.times.size() == 0 || isFrequencyResponse(table, linear_.getInfos())) {
+    return;
+  }
+  RecordedColumns recording(table, experiment_.measurement, getStart(table, start));
+  for (std::size_t o = 0; o < layout_.output_names.size(); ++o) {
+    const std::string& name = layout_.output_names[o];
+    const auto& noise = experiment_.noise.stddev;
+    const auto stated = std::find_if(noise.begin(), noise.end(),
+                                     [&](const OutputNoiseSpec& spec) { return spec.name.text == name; });
+    if (stated == noise.end() || stated->stddev.unknown) {
+      continue;
+    }
+    const double stddev = experiment_.noise.scale * stated->stddev;
+    const Samples samples =
+        twinmap::readSamples(recording.getRows(name), experiment_.measurement, layout_, o);
+    const double error = calcInterpolationError(samples.times, samples.values,
+                                                collectTimesOf(name, experiment_.features), stddev);
+    if (stddev > 0.0 && error > kMatters * stddev) {
+      logWarning(
+          fmt::format("{}: features of {} lie between its samples, where the cubic errs by {} of its noise; "
+                      "estimates may "
+                      "be off by more than they say. Record it faster, or at the times of the features",
+                      table.source, name, toShortText(error / stddev, 2)));
+    }
+  }
+}
+
+std::optional<ExperimentSpec> MeasurementReader::followTimes(const Table& table,
+                                                             std::optional<double> start) const {
+  return followRecordedTimes(experiment_, layout_, table, getStart(table, start));
 }
 
 Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optional<double> start) const {

@@ -70,6 +70,13 @@ class MeasurementReader {
   /// there. Throws MeasurementError.
   AvailableFeatures readAvailableFeatures(const Table& table, std::optional<double> start) const;
 
+  /// The experiment with its features at the times of the table (followRecordedTimes), where it would be
+  /// interpolated.
+  std::optional<ExperimentSpec> followTimes(const Table& table, std::optional<double> start) const;
+
+  /// Warns of outputs whose interpolation errs by more than a tenth of their noise (calcInterpolationError).
+  void warnOfInterpolation(const Table& table, std::optional<double> start) const;
+
   /// d: requireExcitation(), readResponse() and extractFeatures().
   Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;
 

@@ -65,14 +65,20 @@ InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<
     return MeasurementInference::infer(table, start, known);
   }
   const AvailableFeatures found = getReader().readAvailableFeatures(table, start);
-  if (found.isComplete()) {
-    return inferResponse(table, start, found.response, found.features, known);
+  if (!found.isComplete() || getReader().followTimes(table, start)) {
+    return getDirect().infer(table, start, known);
   }
+  InferredMeasurement inferred = inferResponse(table, start, found.response, found.features, known);
+  getDirect().tryClock(found, known, inferred);
+  return inferred;
+}
+
+DirectInference& MeasurementSession::getDirect() {
   if (!direct_) {
     direct_ = std::make_unique<DirectInference>(getReader(), posterior_options_.draws,
                                                 SimulatorRefiner::Model::kTrusted);
   }
-  return direct_->infer(table, start, found, known);
+  return *direct_;
 }
 
 InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {

@@ -32,8 +32,8 @@ struct SessionOptions {
 ///
 /// Where estimates are refined, the simulator is fast and the surrogate's posterior was not asked for, its
 /// own takes the place of the refined estimate where least squares may mislead (needsPosterior), and a
-/// recording that lacks samples is inferred by the simulator alone (DirectInference), as from the experiment
-/// file.
+/// recording that lacks samples or would be interpolated is inferred by the simulator alone
+/// (DirectInference), as from the experiment file.
 class MeasurementSession final : public MeasurementInference {
  public:
   /// Throws ExperimentError where the simulator cannot be made, or the posterior that is asked for cannot be
@@ -55,6 +55,7 @@ class MeasurementSession final : public MeasurementInference {
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
  private:
+  DirectInference& getDirect();
   void choosePosterior(const SessionOptions& options);
   /// Whether the simulator may be asked for a posterior that replaces what the estimator cannot give.
   bool samplesByNeed() const { return samples_where_needed_ || samples_always_; }

@@ -165,10 +165,27 @@ Json toJson(const NoiseReport& report) {
   return json;
 }
 
+Json toJson(const ClockFault& fault) {
+  if (fault.kind == ClockFaultKind::kRate) {
+    return {{"rate", fault.size}, {"sd", fault.stddev}};
+  }
+  Json json{{"late", fault.size}, {"sd", fault.stddev}};
+  if (fault.kind == ClockFaultKind::kSlip) {
+    json["from"] = fault.from;
+  }
+  return json;
+}
+
 /// What the recording lacks, and what it has other than the stated noise.
 void addRecording(const InferredMeasurement& inferred, Json& json) {
+  if (!inferred.remarks.empty()) {
+    json["remarks"] = inferred.remarks;
+  }
   if (!inferred.left_out.empty()) {
     json["left_out"] = inferred.left_out;
+  }
+  for (const ClockFault& fault : inferred.clock_faults) {
+    json["clock"].push_back(toJson(fault));
   }
   if (!inferred.posterior || !inferred.posterior->fit) {
     return;

@@ -162,6 +162,9 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   if (inferred.prior) {
     text += "  prior: " + inferred.prior->text + "\n";
   }
+  for (const std::string& remark : inferred.remarks) {
+    text += "  " + remark + "\n";
+  }
   for (const std::string& missing : inferred.left_out) {
     text += "  left out: " + missing + "\n";
   }

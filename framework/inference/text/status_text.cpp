@@ -74,10 +74,10 @@ std::string describePValue(const Trust& trust) {
 }
 
 /// Where the simulator's best point leaves more than noise, or how much.
-std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureInfo>& features) {
+std::string describeResidual(const SimulatorFit& fit) {
   const ResidualTest& test = fit.test;
   const double largest = std::abs(fit.residual[test.largest]);
-  const std::string& where = features[static_cast<std::size_t>(test.largest)].name;
+  const std::string& where = fit.largest_feature;
   constexpr double kMost = 0.5;  // of chi-square: one sample alone, beside which all others fit better
   if (test.largest_p <= std::min(test.chi_square_p, test.whiteness_p) &&
       largest * largest > kMost * fit.chi_square) {
@@ -141,7 +141,7 @@ std::string explainMismatch(const InferredMeasurement& inferred, const std::vect
             factor));
   }
   const std::string where = inferred.trust ? describeAnomaly(*inferred.trust, features)
-                                           : describeResidual(*inferred.posterior->fit, features);
+                                           : describeResidual(*inferred.posterior->fit);
   return nameFiles(explainNotice(Notice::kModelMismatch, where + describeMissing(inferred)), inferred);
 }
 
@@ -154,6 +154,10 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
       outliers.size() == 1 ? "1 sample is" : fmt::format("{} samples are", outliers.size()),
       fmt::format("{}{}", fmt::join(outliers.begin(), outliers.begin() + static_cast<Index>(shown), ", "),
                   outliers.size() > kShown ? " ..." : ""));
+}
+
+std::string explainClock(const std::vector<ClockFault>& faults) {
+  return explainNotice(Notice::kClockFault, fmt::format("{}", fmt::join(describe(faults), "; ")));
 }
 
 /// Of each output whose noise is coloured, or has an offset.
@@ -196,6 +200,9 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   }
   if (is(Notice::kOutliers)) {
     return explainOutliers(inferred.posterior->fit->outliers);
+  }
+  if (is(Notice::kClockFault)) {
+    return explainClock(inferred.clock_faults);
   }
   for (const Notice notice : {Notice::kNoiseLarger, Notice::kNoiseSmaller}) {
     if (is(notice)) {

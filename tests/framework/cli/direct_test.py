@@ -90,6 +90,67 @@ class Direct(FolderTestCase):
             self.assertLess(abs(estimate["mean"] - true), 4 * estimate["sd"], name)
         self.assertIn("2 samples are not noise and left out", self.infer(CART, spiked))
 
+    def test_features_between_samples_are_moved_to_these(self):
+        between = "features=[{samples: {outputs: [x], start: 0.03, interval: 0.05, count: 100}}]"
+        shifted = self.simulate(CART, "shifted.csv", between, *POINT)
+        found = json.loads(self.infer(CART, shifted, "--json"))
+        self.assertEqual(found["statuses"], ["ok"])
+        self.assertIn("at the times of the recording", found["remarks"][0])
+        self.expect_true(found)
+        whole = json.loads(self.infer(CART, self.measured, "--json"))
+        for name in TRUE:
+            self.assertLess(found["parameters"][name]["sd"], 1.1 * whole["parameters"][name]["sd"])
+
+    def test_spikes_in_noise_that_is_unknown_are_left_out(self):
+        path = self.folder / "unknown_spikes.yaml"
+        path.write_text(CART.read_text().replace("stddev: {x: 1e-4}", "stddev: {x: unknown}"))
+        spiked = self.change("spiked_unknown.csv", lambda i, x: x + (0.03 if i in (31, 64) else 0.0))
+        found = json.loads(self.infer(path, spiked, "--json"))
+        self.assertEqual(found["statuses"], ["outliers"])
+        self.assertEqual(len(found["outliers"]), 2)
+        self.assertAlmostEqual(found["noise"]["x"]["stddev"], 1e-4, delta=3e-5)
+        self.expect_true(found)
+
+    def test_spikes_and_larger_noise_are_found_together(self):
+        self.simulate(CART, "louder.csv", "noise.scale=3", *POINT)
+        louder = self.folder / "louder.csv"
+        rows = [line.split(",") for line in louder.read_text().splitlines()]
+        for i in (30, 63):
+            rows[i][1] = repr(float(rows[i][1]) + 0.05)
+        louder.write_text("\n".join(",".join(row) for row in rows) + "\n")
+        found = json.loads(self.infer(CART, louder, "--json"))
+        self.assertEqual(found["statuses"], ["outliers", "noise_larger"])
+        self.assertEqual(len(found["outliers"]), 2)
+        self.expect_true(found)
+
+    def test_a_clock_that_slips_is_named_and_does_not_count(self):
+        lines = self.measured.read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        for row in rows:
+            row[0] = repr(float(row[0]) + (0.01 if float(row[0]) > 2.0 else 0.0))
+        slipped = self.folder / "slipped.csv"
+        slipped.write_text("\n".join([lines[0]] + [",".join(row) for row in rows]) + "\n")
+        found = json.loads(self.infer(CART, slipped, "--json"))
+        self.assertEqual(found["statuses"], ["clock_fault"])
+        (slip,) = found["clock"]
+        self.assertLess(abs(slip["late"] - 0.01), 4 * slip["sd"])
+        self.assertAlmostEqual(slip["from"], 2.06, delta=0.11)
+        self.expect_true(found)
+        self.assertRegex(self.infer(CART, slipped), r"from t = 2.06 s on the record is [0-9.]+ ms late")
+
+    def test_a_clock_that_runs_fast_is_named(self):
+        fast = self.folder / "fast.csv"
+        lines = self.measured.read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        fast.write_text(
+            "\n".join([lines[0]] + [f"{1.004 * float(t)!r},{x}" for t, x in (row[:2] for row in rows)]) + "\n"
+        )
+        found = json.loads(self.infer(CART, fast, "--json"))
+        self.assertEqual(found["statuses"], ["clock_fault"])
+        (rate,) = found["clock"]
+        self.assertLess(abs(rate["rate"] - 0.004 / 1.004), 4 * rate["sd"])
+        self.expect_true(found)
+
     def test_noise_of_another_size_is_found(self):
         noisy = self.simulate(CART, "noisy.csv", "noise.scale=3", *POINT)
         found = json.loads(self.infer(CART, noisy, "--json"))

@@ -11,8 +11,17 @@ TableBuilder::TableBuilder(const std::string& source, const std::vector<std::str
                            MissingCells missing)
     : table_{source, {}, {}}, wanted_(wanted), missing_(missing) {}
 
+bool TableBuilder::isWanted(const std::string& name) const {
+  return std::find(wanted_.begin(), wanted_.end(), name) != wanted_.end();
+}
+
+bool TableBuilder::wantsAnyOf(const std::string& prefix) const {
+  return wantsAll() || std::any_of(wanted_.begin(), wanted_.end(),
+                                   [&](const std::string& name) { return name.rfind(prefix, 0) == 0; });
+}
+
 bool TableBuilder::takes(const std::string& name) {
-  const bool taken = wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), name) != wanted_.end();
+  const bool taken = wantsAll() || isWanted(name);
   if (!taken) {
     table_.skipped.push_back({name, ""});
   }

@@ -13,6 +13,13 @@ class TableBuilder {
   TableBuilder(const std::string& source, const std::vector<std::string>& wanted,
                MissingCells missing = MissingCells::kRefuse);
 
+  const std::string& getSource() const { return table_.source; }
+  bool wantsAll() const { return wanted_.empty(); }
+  /// Whether a column was asked for by its name.
+  bool isWanted(const std::string& name) const;
+  /// Whether any column is that begins so.
+  bool wantsAnyOf(const std::string& prefix) const;
+
   /// Whether a column is to be read; one that is not is noted as not asked for.
   bool takes(const std::string& name);
 

@@ -62,6 +62,10 @@ class Candidates {
     };
     const NoiseHypothesis sizes = supposeSizes();
     add(sizes);
+    if (std::any_of(outputs_.begin(), outputs_.end(), [&](int output) { return getStated(output).factor; })) {
+      listed.push_back(sizes);  // untried, as outliers are: a fit that they drew says nothing about them
+      listed.back().has_outliers = true;
+    }
     const NoiseHypothesis offsets = supposeOffsets(sizes);
     if (const std::vector<int> kept = findOffsets(offsets); !kept.empty()) {
       add(keepOffsets(supposeOffsets(stated_), kept));
@@ -92,12 +96,6 @@ class Candidates {
   NoiseHypothesis supposeOutliers() const {
     NoiseHypothesis hypothesis = stated_;
     hypothesis.has_outliers = true;
-    for (OutputNoise& noise : hypothesis.outputs) {
-      if (!noise.factor) {
-        const OutputSamples samples = findSamples(*fit_.model, window_, noise.output);
-        noise.factor = calcRobustSize(fit_.residual(samples.rows));
-      }
-    }
     return hypothesis;
   }
 

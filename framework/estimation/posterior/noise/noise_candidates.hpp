@@ -17,10 +17,10 @@ struct LinearFit {
 };
 
 /// What else than `stated` the noise of a measurement may be that `stated` does not explain, the likeliest
-/// first: a few samples that are not noise; sizes other than stated; sensors with an offset; colours
-/// (fitColours), of any size, where neighbours agree too much; and these with an offset. Each but the first
-/// is tried on the linear model and left out where it explains the residual no better; offsets are supposed
-/// of those outputs alone that have one of more than 3.3 standard deviations there.
+/// first: a few samples that are not noise; sizes other than stated; both; sensors with an offset; colours
+/// (fitColours), of any size, where neighbours agree too much; and these with an offset. Each without
+/// outliers is tried on the linear model and left out where it explains the residual no better; offsets are
+/// supposed of those outputs alone that have one of more than 3.3 standard deviations there.
 std::vector<NoiseHypothesis> listNoiseHypotheses(const NoiseHypothesis& stated, const LinearFit& fit);
 
 /// `stated` with a guess in the place of sizes that are not known, from the second differences of the

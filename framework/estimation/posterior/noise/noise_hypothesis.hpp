@@ -30,8 +30,7 @@ struct CensoredFeature {
 
 /// How the residuals of one measurement count. Default: normal noise as it is stated.
 struct NoiseHypothesis {
-  /// A hundredth of the samples may be anything; not of outputs whose size is not known, that have an offset
-  /// or colours.
+  /// A hundredth of the samples may be anything; not of outputs that have an offset or colours.
   bool has_outliers = false;
   std::vector<OutputNoise> outputs{};  ///< those of which something else than stated is supposed
 

@@ -44,6 +44,22 @@ double calcOffsetInformation(const MatrixXd& series, double variance) {
          linalg::solveLower(linalg::calcCholesky(information).lower, shared).squaredNorm();
 }
 
+/// The lags of stamps that are rounded, or jitter: each step in median steps, rounded, at least one.
+std::vector<long> countSteps(const std::vector<double>& times) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    steps.push_back(times[i] - times[i - 1]);
+  }
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::vector<long> lags{0};
+  for (const double step : steps) {
+    lags.push_back(lags.back() + (*middle > 0.0 ? std::max(1L, std::lround(step / *middle)) : 1L));
+  }
+  return lags;
+}
+
 }  // namespace
 
 OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& window, int output,
@@ -75,6 +91,9 @@ OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& win
   }
   if (times.size() > 1 && smallest > kSame * times.back() / static_cast<double>(times.size())) {
     samples.lags = findLags(times, smallest);
+  }
+  if (samples.lags.empty() && times.size() > 2) {
+    samples.lags = countSteps(times);
   }
   return samples;
 }

@@ -22,7 +22,9 @@ struct LinearLoss {
 /// The samples of an output in time among the features of a window.
 struct OutputSamples {
   std::vector<Eigen::Index> rows;  ///< of the window's features, in the order of time
-  std::vector<long> lags;  ///< in the smallest of their differences; empty where they are on no such grid
+  /// In the smallest of their differences; where they are on no such grid, as of stamps that jitter, in their
+  /// median, rounded.
+  std::vector<long> lags;
 };
 /// Without those that are censored.
 OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& window, int output,

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/estimation/posterior/noise/outlier_loss.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -11,28 +13,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kOutlierShare = 0.01;  // of samples, before they are seen
-constexpr double kOutlierScale = 10.0;  // in noise standard deviations
-
-/// Likelihoods of a residual, relative to that of noise at 0.
-struct Likelihoods {
-  double noise, outlier;
-};
-
-Likelihoods calcLikelihoods(double residual) {
-  const double ratio = residual / kOutlierScale;
-  const double peak = std::sqrt(2.0 / std::acos(-1.0)) / kOutlierScale;  // Cauchy's over the normal one's
-  return {(1.0 - kOutlierShare) * std::exp(-0.5 * residual * residual),
-          kOutlierShare * peak / (1.0 + ratio * ratio)};
-}
-
-/// The weight of a residual's square that gives the slope of its loss.
-double calcOutlierWeight(double residual) {
-  const Likelihoods likelihoods = calcLikelihoods(residual);
-  const double is_noise = likelihoods.noise / (likelihoods.noise + likelihoods.outlier);
-  return is_noise + (1.0 - is_noise) * 2.0 / (kOutlierScale * kOutlierScale + residual * residual);
-}
 
 /// The normal density over its distribution function, at z.
 double calcMillsRatio(double z) {
@@ -64,6 +44,11 @@ ResidualLoss::ResidualLoss(const NoiseHypothesis& hypothesis, const RefinementMo
   for (const OutputNoise& noise : hypothesis.outputs) {
     OutputSamples samples = findSamples(model, window, noise.output, hypothesis.censored);
     if (samples.rows.size() < 2) {
+      continue;
+    }
+    if (has_outliers_ && !noise.factor) {
+      scale_(findSamples(model, window, noise.output).rows).setZero();
+      of_unknown_size_.push_back({noise.output, std::move(samples.rows)});
       continue;
     }
     if (noise.factor && !noise.has_offset && noise.colours.empty()) {
@@ -101,8 +86,7 @@ double ResidualLoss::calc(const VectorXd& residual) const {
   double loss = 0.0;
   if (has_outliers_) {
     for (const double one : scaled) {
-      const Likelihoods likelihoods = calcLikelihoods(one);
-      loss -= 2.0 * std::log(likelihoods.noise + likelihoods.outlier);
+      loss += calcOutlierLoss(one);
     }
   } else {
     loss = scaled.squaredNorm();
@@ -110,18 +94,33 @@ double ResidualLoss::calc(const VectorXd& residual) const {
   for (const Censored& one : censored_) {
     loss += calcCensoredLoss(-one.side * one.scale * residual[one.row]);
   }
+  for (const OfUnknownSize& output : of_unknown_size_) {
+    loss += findOutlierSize(residual(output.rows)).loss;
+  }
   for (const auto& output : outputs_) {
     loss += output->calc(residual);
   }
   return loss;
 }
 
+VectorXd ResidualLoss::scaleBySizes(const VectorXd& residual, VectorXd scaled) const {
+  for (const OfUnknownSize& output : of_unknown_size_) {
+    const VectorXd own = residual(output.rows);
+    scaled(output.rows) = own / findOutlierSize(own).size;
+  }
+  return scaled;
+}
+
 LinearLoss ResidualLoss::linearize(const VectorXd& residual, const MatrixXd& jacobian) const {
-  const VectorXd scaled = scale(residual);
+  const VectorXd scaled = scaleBySizes(residual, scale(residual));
   LinearLoss linear;
   linear.weights =
       has_outliers_ ? VectorXd(scaled.unaryExpr(&calcOutlierWeight)) : VectorXd::Ones(residual.size());
-  const VectorXd precisions = linear.weights.cwiseProduct(scale(VectorXd::Ones(residual.size())).cwiseAbs2());
+  VectorXd scales = scale(VectorXd::Ones(residual.size()));
+  for (const OfUnknownSize& output : of_unknown_size_) {
+    scales(output.rows).setConstant(1.0 / findOutlierSize(residual(output.rows)).size);
+  }
+  const VectorXd precisions = linear.weights.cwiseProduct(scales.cwiseAbs2());
   const MatrixXd weighted = precisions.asDiagonal() * jacobian;
   linear.information = jacobian.transpose() * weighted;
   linear.descent = weighted.transpose() * residual;
@@ -144,6 +143,16 @@ ResidualLoss::Standardized ResidualLoss::standardize(const VectorXd& residual, c
                                                      double degrees) const {
   Standardized standardized{scale(residual), degrees, {}};
   const double scale = degrees / static_cast<double>(residual.size());
+  for (const OfUnknownSize& output : of_unknown_size_) {
+    const VectorXd own = residual(output.rows);
+    FoundNoise found;
+    found.output = output.output;
+    found.size_was_inferred = true;
+    found.factor = findOutlierSize(own).size / std::sqrt(scale);
+    found.effective_samples = static_cast<double>(own.size());
+    standardized.residual(output.rows) = own / found.factor;
+    standardized.noise.push_back(std::move(found));
+  }
   for (const auto& output : outputs_) {
     VectorXd own = residual;
     standardized.noise.push_back(output->standardize(own, jacobian, scale));

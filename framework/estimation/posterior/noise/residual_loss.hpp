@@ -10,7 +10,7 @@ namespace twinmap {
 
 /// -2 log likelihood, but for a summand, of whitened residuals (k) under a hypothesis of their noise.
 /// - Outliers have a Cauchy distribution of ten noise standard deviations, so that spikes of 20 and of 500
-///   are nothing unusual.
+///   are nothing unusual (calcOutlierLoss); of noise of unknown size, of its likeliest (findOutlierSize).
 /// - Of an output with n samples r, correlation R and unknown size, n log(r' R^-1 r / n) + log |R|. An offset
 ///   c is projected out, which leaves n - 1 for n, and adds log(c' R^-1 c).
 /// - Over the colours that R may have it is the mixture of likelihoods.
@@ -44,10 +44,19 @@ class ResidualLoss {
     double side, scale;
   };
 
+  /// An output of which some samples may be outliers of noise of unknown size.
+  struct OfUnknownSize {
+    int output;
+    std::vector<Eigen::Index> rows;
+  };
+
+  /// `scaled` with the residuals of these outputs in units of their likeliest size.
+  Eigen::VectorXd scaleBySizes(const Eigen::VectorXd& residual, Eigen::VectorXd scaled) const;
   Eigen::VectorXd scale(const Eigen::VectorXd& residual) const;
 
   Eigen::VectorXd scale_;  // k: of residuals that count one by one; 0 of the others; empty: 1 of all
   bool has_outliers_;
+  std::vector<OfUnknownSize> of_unknown_size_;
   std::vector<Censored> censored_;
   std::vector<std::shared_ptr<const OutputLoss>> outputs_;
 };

@@ -224,14 +224,29 @@ void writeMat(const std::filesystem::path& path, mat_ft version) {
   write(file, "complex", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, 1, &parts, MAT_F_COMPLEX);
   write(file, "bad", MAT_C_DOUBLE, MAT_T_DOUBLE, 2, 1, bad);
   write(file, "text", MAT_C_CHAR, MAT_T_UTF8, 1, 3, "abc");
+  std::size_t one[] = {1, 1}, size[] = {3, 1};
+  const char* fields[] = {"Time", "Data"};
+  matvar_t* series = Mat_VarCreateStruct("series", 2, one, fields, 2);
+  for (const char* field : fields) {
+    Mat_VarSetStructFieldByName(
+        series, field, 0,
+        Mat_VarCreate(nullptr, MAT_C_DOUBLE, MAT_T_DOUBLE, 2, size, const_cast<double*>(numbers), 0));
+  }
+  Mat_VarWrite(file, series, MAT_COMPRESSION_NONE);
+  Mat_VarFree(series);
   Mat_Close(file);
 }
 
-TEST_P(MatTable, ColumnsAreRealVectors) {
+TEST_P(MatTable, ColumnsAreRealVectorsAndThoseOfArraysAndStructures) {
   const TestFolder folder;
   writeMat(folder / "a.mat", GetParam());
   const Table table = readTable(folder / "a.mat");
-  EXPECT_EQ(table.columns.size(), 4U);
+  EXPECT_EQ(table.columns.size(), 8U);
+  EXPECT_EQ(getColumn(table, "matrix(:,2)").values, makeVector({3.5, 4.5}));
+  EXPECT_EQ(getColumn(table, "series.Data").values, makeVector({1.5, 2.5, 3.5}));
+  const Table single = readTable(folder / "a.mat", {"series.Time", "matrix(:,1)"});
+  EXPECT_EQ(single.columns.size(), 2U);
+  EXPECT_EQ(getColumn(single, "matrix(:,1)").values, makeVector({1.5, 2.5}));
   EXPECT_EQ(getColumn(table, "column").values, makeVector({1.5, 2.5, 3.5, 4.5}));
   EXPECT_EQ(getColumn(table, "row").values, makeVector({1.5, 2.5, 3.5, 4.5}));
   EXPECT_EQ(getColumn(table, "single").values, makeVector({0.5, 1.5}));
@@ -240,7 +255,7 @@ TEST_P(MatTable, ColumnsAreRealVectors) {
     return getError([&] { readTable(folder / "a.mat", {name}); })
         .substr(folder.getPath().string().size() + 8);
   };
-  EXPECT_EQ(getSkipped("matrix"), "column 'matrix' must be a vector, with one row or one column");
+  EXPECT_EQ(getSkipped("matrix"), "column 'matrix' must be a vector, or one of its columns: 'matrix(:,1)'");
   EXPECT_EQ(getSkipped("complex"), "column 'complex' is complex; must be real");
   EXPECT_EQ(getSkipped("bad"), "column 'bad' has inf at row 2; must be a finite number");
   EXPECT_EQ(getSkipped("text"), "column 'text' is not an array of numbers");

@@ -43,6 +43,12 @@ NoiseHypothesis makeNoise(std::optional<double> factor, bool has_offset,
   return hypothesis;
 }
 
+NoiseHypothesis makeOutliersOfUnknownSize() {
+  NoiseHypothesis hypothesis = makeNoise({}, false);
+  hypothesis.has_outliers = true;
+  return hypothesis;
+}
+
 const std::vector<NoiseColour> kColours{{makeVector({0.6}), 0.0}, {makeVector({0.7, -0.2}), -0.3}};
 
 MatrixXd makeCorrelation(const std::vector<double>& autoregression, Index n) {
@@ -67,7 +73,8 @@ TEST(ResidualLoss, LinearModelHasItsSlope) {
   constexpr double kStep = 1e-6;
   for (const NoiseHypothesis& hypothesis :
        {NoiseHypothesis{}, makeOutliers(), makeNoise({}, false), makeNoise(2.0, true), makeNoise({}, true),
-        makeNoise({}, true, kColours), makeNoise(1.5, false, kColours), censored}) {
+        makeNoise({}, true, kColours), makeNoise(1.5, false, kColours), censored,
+        makeOutliersOfUnknownSize()}) {
     const ResidualLoss loss(hypothesis, problem.model, problem.model.getWhole());
     const VectorXd descent = loss.linearize(residual, MatrixXd::Identity(8, 8)).descent;
     for (Index i = 0; i < residual.size(); ++i) {
@@ -157,6 +164,25 @@ TEST(ResidualLoss, SpikesCountForNothing) {
     EXPECT_NEAR(with.mean[j], without.mean[j], 0.7 * without.stddev[j]);
     EXPECT_NEAR(with.stddev[j] / without.stddev[j], 1.0, 0.15);
   }
+}
+
+TEST(ResidualLoss, SpikesInNoiseOfUnknownSizeCountForNothing) {
+  const MatrixXd matrix = makeMatrix(60, 2);
+  Problem problem = makeLine(matrix);
+  const VectorXd clean = problem.measure(makeVector({0.1, -0.2}), 3.0 * kSampleNoise);
+  VectorXd spiked = clean;
+  spiked[7] += 15.0;
+  spiked[42] -= 60.0;
+  const SimulatorPosterior without = sampleWith(problem, clean, makeNoise({}, false));
+  const SimulatorPosterior with = sampleWith(problem, spiked, makeOutliersOfUnknownSize());
+  ASSERT_TRUE(with.isReliable()) << with.message;
+  for (Index j = 0; j < 2; ++j) {
+    EXPECT_NEAR(with.mean[j], without.mean[j], 0.7 * without.stddev[j]);
+    EXPECT_NEAR(with.stddev[j] / without.stddev[j], 1.0, 0.15);
+  }
+  EXPECT_NEAR(with.standardized.noise.at(0).factor / without.standardized.noise.at(0).factor, 1.0, 0.1);
+  EXPECT_LT(with.residual_weights[7], 0.01);
+  EXPECT_GT(with.residual_weights[8], 0.5);
 }
 
 /// A line through samples whose noise has an autocorrelation of rho^k.

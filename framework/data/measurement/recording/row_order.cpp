@@ -1,4 +1,4 @@
-#include "framework/data/measurement/row_order.hpp"
+#include "framework/data/measurement/recording/row_order.hpp"
 
 #include <fmt/core.h>
 

@@ -1,0 +1,61 @@
+#include "framework/data/measurement/recording/interpolation_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/data/measurement/time_series.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr Index kFew = 4, kMany = 6;
+
+/// Lagrange's weights of `count` samples from `first` on.
+VectorXd makeWeights(const VectorXd& times, Index first, Index count, double t) {
+  VectorXd weights = VectorXd::Ones(count);
+  for (Index i = 0; i < count; ++i) {
+    for (Index j = 0; j < count; ++j) {
+      if (i != j) {
+        weights[i] *= (t - times[first + j]) / (times[first + i] - times[first + j]);
+      }
+    }
+  }
+  return weights;
+}
+
+/// The weights of the six nearest samples less those of the four.
+VectorXd calcDifference(const VectorXd& times, Index first, double t) {
+  VectorXd difference = makeWeights(times, first, kMany, t);
+  difference.segment((kMany - kFew) / 2, kFew) -= makeWeights(times, first + (kMany - kFew) / 2, kFew, t);
+  return difference;
+}
+
+}  // namespace
+
+double calcInterpolationError(const VectorXd& times, const VectorXd& values,
+                              const std::vector<double>& needed, double stddev) {
+  constexpr double kSame = 1e-6;  // of a step, as samples are found at needed times
+  if (times.size() < kMany || needed.empty()) {
+    return 0.0;
+  }
+  const double tolerance = kSame * calcMedianStep(times);
+  double squares = 0.0;
+  for (const double t : needed) {
+    const Index next = std::lower_bound(times.begin(), times.end(), t - tolerance) - times.begin();
+    const Index first = next - kMany / 2;
+    if (next >= times.size() || std::abs(times[next] - t) <= tolerance || first < 0 ||
+        first + kMany > times.size()) {
+      continue;
+    }
+    const VectorXd difference = calcDifference(times, first, t);
+    const double error = difference.dot(values.segment(first, kMany));
+    squares += error * error - stddev * stddev * difference.squaredNorm();
+  }
+  return std::sqrt(std::max(0.0, squares / static_cast<double>(needed.size())));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,228 @@
+#include "framework/inference/clock/clock_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/clock/clocked_fit.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kSignificant = 3.3;  // standard deviations: once in a thousand
+
+/// Where a slip would take most of the misfit away.
+struct SlipPlace {
+  double from = 0.0, gain = 0.0;
+};
+
+MatrixXd calcInformation(const MatrixXd& jacobian) {
+  const MatrixXd information = jacobian.transpose() * jacobian;
+  constexpr double kRegular = 1e-12;  // of each diagonal: parameters that the recording does not tell
+  return information + MatrixXd(kRegular * information.diagonal().asDiagonal()) +
+         std::numeric_limits<double>::min() * MatrixXd::Identity(information.rows(), information.cols());
+}
+
+/// Scans all stamps: late: the derivative of the residual by a delay, less what `jacobian` explains.
+/// O(n u^2).
+SlipPlace scanSlips(const VectorXd& residual, const MatrixXd& jacobian, const VectorXd& late,
+                    const std::vector<FeatureInfo>& infos) {
+  const MatrixXd lower = linalg::calcCholesky(calcInformation(jacobian)).lower;
+  const VectorXd left = residual - jacobian * linalg::solveCholesky(lower, jacobian.transpose() * residual);
+  std::vector<Index> order(infos.size());
+  std::iota(order.begin(), order.end(), Index{0});
+  const auto get_time = [&](Index i) { return infos[static_cast<std::size_t>(i)].time; };
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return get_time(a) > get_time(b); });
+  SlipPlace best;
+  double slope = 0.0, squares = 0.0;
+  VectorXd shared = VectorXd::Zero(jacobian.cols());
+  for (std::size_t k = 0; k + 1 < order.size(); ++k) {
+    const Index i = order[k];
+    slope += late[i] * left[i];
+    squares += late[i] * late[i];
+    shared += late[i] * jacobian.row(i).transpose();
+    if (get_time(order[k + 1]) < get_time(i)) {
+      const double own = squares - linalg::solveLower(lower, shared).squaredNorm();
+      constexpr double kLeast = 1e-6;  // of its squares: else the parameters explain it
+      const double gain = own > kLeast * squares ? slope * slope / own : 0.0;
+      best = gain > best.gain ? SlipPlace{get_time(i), gain} : best;
+    }
+  }
+  return best;
+}
+
+class ClockSearch {
+ public:
+  explicit ClockSearch(const RecordedSamples& recorded) : recorded_(recorded) {
+    for (const OutputNoise& noise : recorded.noise.outputs) {
+      is_unknown_ = is_unknown_ || !noise.factor;
+    }
+  }
+
+  /// The fit with the fewest faults that leaves noise; not given where none does.
+  ClockedFit find(const VectorXd& best) const {
+    const ClockFault late{ClockFaultKind::kLate}, rate{ClockFaultKind::kRate};
+    ClockedFit slips = addSlip(linearizeClocked(recorded_, best, {}));
+    ClockedFit simplest;
+    for (ClockedFit fit : {fitClock(recorded_, best, {late}), fitClock(recorded_, best, {rate}), slips}) {
+      if (isNoise(fit) && (!simplest.isGiven() || calcCost(fit) < calcCost(simplest))) {
+        simplest = std::move(fit);
+      }
+    }
+    if (simplest.isGiven()) {
+      return simplest;
+    }
+    if (const ClockedFit both = fitClock(recorded_, best, {late, rate}); isNoise(both)) {
+      return both;
+    }
+    while (slips.isGiven() && !isNoise(slips)) {
+      slips = addSlip(slips);
+    }
+    return slips;
+  }
+
+  /// Standard deviations of the faults' sizes.
+  VectorXd calcStddevs(const ClockedFit& fit) const {
+    const Index u = fit.point.size(), k = static_cast<Index>(fit.faults.size());
+    const MatrixXd lower = linalg::calcCholesky(calcInformation(fit.jacobian)).lower;
+    const MatrixXd covariance = linalg::solveCholesky(lower, MatrixXd::Identity(u + k, u + k));
+    const double variance = is_unknown_ ? fit.residual.squaredNorm() / fit.calcDegrees() : 1.0;
+    return (variance * covariance.diagonal().tail(k)).cwiseSqrt();
+  }
+
+ private:
+  /// The residual with the size of unknown noise taken off.
+  VectorXd scale(const ClockedFit& fit) const {
+    VectorXd scaled = fit.residual;
+    for (const OutputNoise& noise : recorded_.noise.outputs) {
+      std::vector<Index> rows;
+      for (std::size_t i = 0; i < fit.infos.size() && !noise.factor; ++i) {
+        if (fit.infos[i].output == noise.output) {
+          rows.push_back(static_cast<Index>(i));
+        }
+      }
+      if (!rows.empty()) {
+        const VectorXd own = scaled(rows);
+        const double size = std::sqrt(own.squaredNorm() / static_cast<double>(rows.size()));
+        scaled(rows) = own / std::max(size, std::numeric_limits<double>::min());
+      }
+    }
+    return scaled;
+  }
+
+  bool isNoise(const ClockedFit& fit) const {
+    return fit.isGiven() && testResidual(scale(fit), fit.calcDegrees(), fit.infos).isPlausible();
+  }
+
+  /// Chi-square, and for a slip that it may be anywhere.
+  double calcCost(const ClockedFit& fit) const {
+    const bool is_slip = fit.faults.front().kind == ClockFaultKind::kSlip;
+    return scale(fit).squaredNorm() +
+           (is_slip ? 2.0 * std::log(static_cast<double>(fit.residual.size())) : 0.0);
+  }
+
+  /// With one slip more, at the best place; not given where none is worth it.
+  ClockedFit addSlip(const ClockedFit& fit) const {
+    constexpr double kOdds = 1e3, kFewestSamples = 20.0, kMost = 40.0;
+    const auto n = static_cast<double>(fit.residual.size());
+    if (!fit.isGiven() || !recorded_.experiment.noise.correlation.empty() ||
+        static_cast<double>(fit.faults.size()) >= std::min(kMost, n / kFewestSamples)) {
+      return {};
+    }
+    std::vector<ClockFault> faults = fit.faults;
+    faults.push_back({ClockFaultKind::kLate});
+    const ClockedFit with = linearizeClocked(recorded_, fit.point, faults);
+    if (!with.isGiven() || with.residual.size() != fit.residual.size()) {
+      return {};
+    }
+    const SlipPlace place = scanSlips(fit.residual, fit.jacobian, with.jacobian.rightCols(1), fit.infos);
+    const double left = fit.residual.squaredNorm() - place.gain;
+    const double variance = is_unknown_ ? left / fit.calcDegrees() : 1.0;
+    if (place.gain < 2.0 * std::log(n * kOdds) * variance) {
+      return {};
+    }
+    faults.back() = {ClockFaultKind::kSlip, place.from};
+    return placeAnew(fitClock(recorded_, fit.point, faults));
+  }
+
+  /// With each slip where it takes most away, beside the others.
+  ClockedFit placeAnew(ClockedFit fit) const {
+    if (!fit.isGiven()) {
+      return fit;
+    }
+    std::vector<ClockFault> faults = fit.faults;
+    faults.push_back({ClockFaultKind::kLate});
+    const ClockedFit with = linearizeClocked(recorded_, fit.point, faults);
+    if (!with.isGiven() || with.residual.size() != fit.residual.size()) {
+      return fit;
+    }
+    bool moved = false;
+    for (std::size_t k = 0; k < fit.faults.size(); ++k) {
+      const Index column = fit.point.size() + static_cast<Index>(k);
+      MatrixXd others = fit.jacobian;
+      others.col(column).setZero();
+      const VectorXd without = fit.residual + fit.jacobian.col(column) * fit.faults[k].size;
+      const double from = scanSlips(without, others, with.jacobian.rightCols(1), fit.infos).from;
+      moved = moved || from != fit.faults[k].from;
+      faults[k].from = from;
+    }
+    faults.pop_back();
+    if (!moved) {
+      return fit;
+    }
+    ClockedFit next = fitClock(recorded_, fit.point, faults);
+    return next.isGiven() && next.misfit < fit.misfit ? next : fit;
+  }
+
+  const RecordedSamples& recorded_;
+  bool is_unknown_ = false;
+};
+
+}  // namespace
+
+std::optional<ClockedMeasurement> findClockFaults(const RecordedSamples& recorded, const VectorXd& best,
+                                                  const SimulatorPosteriorOptions& options) {
+  constexpr double kReach = 10.0;  // standard deviations: no bound of the posterior's
+  const ClockSearch search(recorded);
+  const ClockedFit fit = search.find(best);
+  if (!fit.isGiven()) {
+    return std::nullopt;
+  }
+  const VectorXd stddevs = search.calcStddevs(fit);
+  ClockedMeasurement found;
+  found.simulator = makeClockedSimulator(recorded, fit.faults, kReach * stddevs);
+  found.features = takeWithin(recorded, fit.faults);
+  VectorXd given(fit.point.size() + stddevs.size());
+  given.head(fit.point.size()) = fit.point;
+  for (std::size_t k = 0; k < fit.faults.size(); ++k) {
+    given[fit.point.size() + static_cast<Index>(k)] = fit.faults[k].size;
+  }
+  found.posterior =
+      found.simulator->sampleUnder(recorded.noise, found.features, recorded.known, given, options);
+  if (!found.posterior.isReliable() || !found.posterior.fit->isPlausible()) {
+    return std::nullopt;
+  }
+  found.faults = fit.faults;
+  const BoundedDraws& draws = found.posterior.estimate.draws;
+  for (std::size_t k = 0; k < found.faults.size(); ++k) {
+    const VectorXd own = draws.points.row(fit.point.size() + static_cast<Index>(k)).transpose();
+    ClockFault& fault = found.faults[k];
+    fault.size = draws.weights.dot(own) / draws.weights.sum();
+    fault.stddev =
+        std::sqrt(draws.weights.dot((own.array() - fault.size).square().matrix()) / draws.weights.sum());
+    if (std::abs(fault.size) < kSignificant * fault.stddev) {
+      return std::nullopt;
+    }
+  }
+  return found;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "framework/inference/clock/clock_search.hpp"
+
+namespace twinmap {
+
+/// The simulator of a recording whose clock has faults (ClockedSimulator), which lie within `half_widths` of
+/// their sizes.
+std::shared_ptr<const SimulatorRefiner> makeClockedSimulator(const RecordedSamples& recorded,
+                                                             const std::vector<ClockFault>& faults,
+                                                             const Eigen::VectorXd& half_widths);
+
+/// The features without those whose true time cannot be simulated (NaN).
+Eigen::VectorXd takeWithin(const RecordedSamples& recorded, const std::vector<ClockFault>& faults);
+
+/// A least-squares fit of the parameters and a clock's faults, with its linear model.
+struct ClockedFit {
+  Eigen::VectorXd point;  ///< all unknown of the model
+  std::vector<ClockFault> faults;
+  Eigen::VectorXd residual;  ///< whitened, n
+  Eigen::MatrixXd jacobian;  ///< minus its derivatives: by the model's unknown in half-widths, by sizes
+  double misfit = 0.0;       ///< with that of the bounds
+  std::vector<FeatureInfo> infos;
+
+  bool isGiven() const { return residual.size() > 0; }
+  double calcDegrees() const;
+};
+
+/// At a point; not given where it cannot be simulated.
+ClockedFit linearizeClocked(const RecordedSamples& recorded, const Eigen::VectorXd& point,
+                            const std::vector<ClockFault>& faults);
+
+/// Gauss and Newton's steps from a point on, halved until the misfit falls. Not given where that cannot be
+/// simulated.
+ClockedFit fitClock(const RecordedSamples& recorded, const Eigen::VectorXd& point,
+                    const std::vector<ClockFault>& faults);
+
+}  // namespace twinmap
