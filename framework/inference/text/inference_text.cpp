@@ -133,6 +133,12 @@ std::string describePosterior(const PosteriorEstimate& posterior,
          makeTable(posterior.estimate, parameters, quantities);
 }
 
+std::string describeSegments(const SegmentReport& segments) {
+  constexpr int kDigits = 4;
+  return fmt::format("  {} segments of {} s, each with its own initial state ({} numbers, eliminated)\n",
+                     segments.count, toShortText(segments.length, kDigits), segments.states);
+}
+
 /// The noise of outputs of which the file says that it is unknown.
 std::string describeInferredNoise(const SimulatorFit& fit) {
   constexpr int kDigits = 3;
@@ -158,6 +164,9 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   std::string text = describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters);
   if (inferred.posterior && inferred.posterior->fit) {
     text += describeInferredNoise(*inferred.posterior->fit);
+  }
+  if (inferred.segments) {
+    text += describeSegments(*inferred.segments);
   }
   if (inferred.prior) {
     text += "  prior: " + inferred.prior->text + "\n";
