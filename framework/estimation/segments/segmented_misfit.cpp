@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -20,9 +21,14 @@ constexpr int kMaxRounds = 8;
 /// chi-square even where the response is as far from linear as it can be.
 constexpr double kLastGain = 0.01;
 /// Segments simulated at once: enough to keep lanes busy, and their derivatives take some ten megabytes.
-constexpr std::size_t kBatch = 256;
-/// Points whose states are remembered.
-constexpr std::size_t kAnchors = 64;
+constexpr Index kBatch = 256;
+
+/// Points whose states are remembered: as many as searches have at once, in at most 200 MB.
+std::size_t countAnchors(const SegmentedRecording& recording) {
+  constexpr double kMost = 64.0, kFewest = 4.0, kNumbers = 25e6;
+  const auto numbers = static_cast<double>(recording.features.size() * recording.scales.size());
+  return static_cast<std::size_t>(std::clamp(kNumbers / numbers, kFewest, kMost));
+}
 
 VectorXd makeHeld(const SegmentedRecording& recording) {
   const auto u = static_cast<Index>(recording.unknown.size());
@@ -37,82 +43,127 @@ SegmentedMisfit::SegmentedMisfit(Simulator& simulator, const SegmentedRecording&
     : simulator_(simulator),
       recording_(recording),
       box_(recording.unknown, {0, static_cast<Index>(recording.unknown.size())}, makeHeld(recording)),
-      prior_{(kStateScales * recording.scales).cwiseInverse(), VectorXd::Zero(recording.scales.size())} {}
+      precision_((kStateScales * recording.scales).cwiseInverse()),
+      samples_(recording.features.array().isFinite().count()),
+      kept_(countAnchors(recording)) {}
 
-/// By the linear model of the nearest point at which states are known; at first as they are given.
-MatrixXd SegmentedMisfit::predictStates(const VectorXd& at) const {
+const SegmentedMisfit::Anchor* SegmentedMisfit::findNearest(const VectorXd& at) const {
   const auto nearest = std::min_element(
       anchors_.begin(), anchors_.end(),
       [&](const Anchor& a, const Anchor& b) { return (at - a.at).norm() < (at - b.at).norm(); });
-  if (nearest == anchors_.end()) {
-    return recording_.states;
-  }
-  MatrixXd states = nearest->states;
-  for (Index k = 0; k < states.cols(); ++k) {
-    states.col(k) += nearest->slopes[static_cast<std::size_t>(k)] * (at - nearest->at);
-  }
-  return states;
+  return nearest == anchors_.end() ? nullptr : &*nearest;
 }
 
-void SegmentedMisfit::simulate(const MatrixXd& points, const std::vector<SegmentFit*>& fits) {
-  const auto u = points.rows(), s = recording_.scales.size();
-  for (std::size_t first = 0; first < fits.size(); first += kBatch) {
-    const std::size_t count = std::min(kBatch, fits.size() - first);
-    MatrixXd sampled(u + s + recording_.known.size() + 1, static_cast<Index>(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      const SegmentFit& fit = *fits[first + i];
-      sampled.col(static_cast<Index>(i)) = box_.makePoint(points.col(fit.point));
-      sampled.col(static_cast<Index>(i)).segment(u, s) = fit.state;
-      sampled(sampled.rows() - 1, static_cast<Index>(i)) = recording_.starts[fit.segment];
+/// Of the first point all segments, then of the second ...; each where the linear model of the nearest point
+/// before says, at first where the recording says.
+std::vector<SegmentedMisfit::SegmentFit> SegmentedMisfit::begin(const MatrixXd& points) const {
+  std::vector<SegmentFit> fits;
+  for (Index i = 0; i < points.cols(); ++i) {
+    const Anchor* const anchor = findNearest(points.col(i));
+    for (Index k = 0; k < recording_.starts.size(); ++k) {
+      SegmentFit fit;
+      fit.point = i;
+      fit.segment = k;
+      fit.state = recording_.states.col(k);
+      if (anchor != nullptr) {
+        fit.near = &anchor->best[static_cast<std::size_t>(k)];
+        fit.state = fit.near->state + fit.near->slopes * (points.col(i) - anchor->at);
+      }
+      fits.push_back(std::move(fit));
     }
-    MatrixXd responses(simulator_.getLayout().getRowCount(), sampled.cols()), derivatives;
-    std::vector<SampleStatus> statuses(count);
+  }
+  return fits;
+}
+
+void SegmentedMisfit::improve(const MatrixXd& points, bool with_derivatives, std::vector<SegmentFit>& fits) {
+  for (int round = 0; round < kMaxRounds; ++round) {
+    std::vector<SegmentFit*> active;
+    for (SegmentFit& fit : fits) {
+      if (fit.active) {
+        active.push_back(&fit);
+      }
+    }
+    for (std::size_t first = 0; first < active.size(); first += kBatch) {
+      const auto begin = active.begin() + static_cast<std::ptrdiff_t>(first);
+      const std::size_t count = std::min<std::size_t>(kBatch, active.size() - first);
+      simulate(points, with_derivatives, {begin, begin + static_cast<std::ptrdiff_t>(count)});
+    }
+  }
+}
+
+void SegmentedMisfit::simulate(const MatrixXd& points, bool with_derivatives,
+                               const std::vector<SegmentFit*>& fits) {
+  const Index u = points.rows(), s = recording_.scales.size(), count = static_cast<Index>(fits.size());
+  MatrixXd sampled(u + s + recording_.known.size() + 1, count);
+  for (Index i = 0; i < count; ++i) {
+    const SegmentFit& fit = *fits[static_cast<std::size_t>(i)];
+    sampled.col(i) = box_.makePoint(points.col(fit.point));
+    sampled.col(i).segment(u, s) = fit.state;
+    sampled(sampled.rows() - 1, i) = recording_.starts[fit.segment];
+  }
+  MatrixXd responses(simulator_.getLayout().getRowCount(), count), derivatives(responses.rows(), 0);
+  std::vector<SampleStatus> statuses(fits.size());
+  if (with_derivatives) {
     simulator_.simulateWithDerivatives(sampled, responses, derivatives, statuses.data());
-    simulations_ += static_cast<int>(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto column = static_cast<Index>(i);
-      fits[first + i]->status = statuses[i];
-      update(responses.col(column), derivatives.middleCols(column * sampled.rows(), u + s), *fits[first + i]);
-    }
+  } else {
+    simulator_.simulate(sampled, responses, statuses.data());
+  }
+  simulations_ += static_cast<int>(count);
+  for (Index i = 0; i < count; ++i) {
+    SegmentFit& fit = *fits[static_cast<std::size_t>(i)];
+    fit.status = statuses[static_cast<std::size_t>(i)];
+    update(responses.col(i),
+           with_derivatives ? MatrixXd(derivatives.middleCols(i * sampled.rows(), u + s)) : MatrixXd(), fit);
   }
 }
 
-/// Takes what was simulated as the best so far, or goes back half the way.
+/// The prior's mean of the state less the state.
+VectorXd SegmentedMisfit::calcAhead(const SegmentFit& fit) const {
+  return recording_.states.col(fit.segment) - fit.state;
+}
+
+/// Takes what was simulated as the best so far, or goes back half the way. Samples that are missing count 0.
 void SegmentedMisfit::update(const VectorXd& response, const MatrixXd& derivatives, SegmentFit& fit) const {
-  const Index u = static_cast<Index>(recording_.unknown.size()), s = recording_.scales.size();
   if (!fit.status.ok) {
     retreat(fit);
     return;
   }
-  VectorXd difference = recording_.features.col(fit.segment) - recording_.extractor.extract(response);
-  MatrixXd slopes = recording_.extractor.extract(derivatives);
-  fit.residuals = 0;
-  for (Index i = 0; i < difference.size(); ++i) {
-    if (std::isfinite(difference[i])) {
-      ++fit.residuals;
-    } else {
-      difference[i] = 0.0;
-      slopes.row(i).setZero();
-    }
-  }
-  slopes.leftCols(u) *= box_.getHalfWidths().asDiagonal();
+  const VectorXd measured = recording_.features.col(fit.segment);
+  const auto is_there = measured.array().isFinite();
+  const VectorXd difference = is_there.select(measured - recording_.extractor.extract(response), 0.0);
   const VectorXd residual = recording_.whitener.apply(difference)(recording_.order, 0);
-  const MatrixXd jacobian = recording_.whitener.apply(slopes)(recording_.order, Eigen::all);
-  const VectorXd ahead = recording_.states.col(fit.segment) - fit.state;
-  const double misfit = residual.squaredNorm() + prior_.precision.cwiseProduct(ahead).squaredNorm();
+  const double misfit = residual.squaredNorm() + precision_.cwiseProduct(calcAhead(fit)).squaredNorm();
   if (!std::isfinite(misfit) || (fit.accepted.size() > 0 && !(misfit < fit.misfit))) {
     retreat(fit);
     return;
   }
   fit.accepted = fit.state;
   fit.misfit = misfit;
-  fit.local =
-      eliminateState(residual, jacobian.rightCols(s), jacobian.leftCols(u), {prior_.precision, ahead});
-  fit.information = fit.local.jacobian.transpose() * fit.local.jacobian;
-  fit.descent = fit.local.jacobian.transpose() * fit.local.residual;
-  fit.local.jacobian.resize(0, 0);
+  if (derivatives.size() == 0) {
+    takeStep(residual, fit.near->by_state, fit);
+  } else {
+    MatrixXd slopes = recording_.extractor.extract(derivatives);
+    slopes = is_there.replicate(1, slopes.cols()).select(slopes, 0.0);
+    takeStep(residual, recording_.whitener.apply(slopes)(recording_.order, Eigen::all), fit);
+  }
   fit.state = fit.accepted + fit.local.step;
   fit.active = fit.local.gain > kLastGain;
+}
+
+/// derivatives: whitened, by the parameters' units and the states (u + s), or by the states alone.
+void SegmentedMisfit::takeStep(const VectorXd& residual, const MatrixXd& derivatives, SegmentFit& fit) const {
+  const Index s = recording_.scales.size(), u = derivatives.cols() - s;
+  if (u == 0) {
+    const VectorXd descent =
+        derivatives.transpose() * residual + precision_.cwiseAbs2().cwiseProduct(calcAhead(fit));
+    fit.local.step = linalg::solveCholesky(fit.near->hessian, descent);
+    fit.local.gain = descent.dot(fit.local.step);
+    return;
+  }
+  fit.by_state = derivatives.rightCols(s);
+  fit.local = eliminateState(residual, fit.by_state,
+                             derivatives.leftCols(u) * box_.getHalfWidths().asDiagonal(),
+                             {precision_, calcAhead(fit)});
 }
 
 /// Half the way back to the best state so far, or, where there is none, to the one that was given.
@@ -126,50 +177,21 @@ void SegmentedMisfit::retreat(SegmentFit& fit) const {
   }
 }
 
-/// Of the first point all segments, then of the second ...
-std::vector<SegmentedMisfit::SegmentFit> SegmentedMisfit::fitAll(const MatrixXd& points) {
-  const Index segments = recording_.starts.size();
-  std::vector<SegmentFit> fits(static_cast<std::size_t>(points.cols() * segments));
-  for (Index i = 0; i < points.cols(); ++i) {
-    const MatrixXd states = predictStates(points.col(i));
-    for (Index k = 0; k < segments; ++k) {
-      SegmentFit& fit = fits[static_cast<std::size_t>(i * segments + k)];
-      fit.point = i;
-      fit.segment = k;
-      fit.state = states.col(k);
-    }
-  }
-  for (int round = 0; round < kMaxRounds; ++round) {
-    std::vector<SegmentFit*> active;
-    for (SegmentFit& fit : fits) {
-      if (fit.active) {
-        active.push_back(&fit);
-      }
-    }
-    if (active.empty()) {
-      break;
-    }
-    simulate(points, active);
-  }
-  return fits;
-}
-
 /// fits: of all segments at the point.
 LocalMisfit SegmentedMisfit::combine(const VectorXd& at, const SegmentFit* fits) const {
   const Index u = at.size(), segments = recording_.starts.size(), rows = recording_.features.rows();
-  LocalMisfit local{{}, at, 0.0, 0.0, 0, MatrixXd::Zero(u, u), VectorXd::Zero(u), {}, {}};
+  LocalMisfit local{{}, at, 0.0, 0.0, samples_, MatrixXd::Zero(u, u), VectorXd::Zero(u), {}, {}};
   local.residual.resize(segments * rows);
   double told = 0.0;
   for (Index k = 0; k < segments; ++k) {
-    const SegmentFit& fit = fits[k];
-    if (fit.accepted.size() == 0) {
-      return {fit.status, {}, 0.0, 0.0, 0, {}, {}, {}, {}};
+    if (fits[k].accepted.size() == 0) {
+      return {fits[k].status, {}, 0.0, 0.0, 0, {}, {}, {}, {}};
     }
-    local.information += fit.information;
-    local.descent += fit.descent;
-    local.residual.segment(k * rows, rows) = fit.local.residual;
-    local.residuals += fit.residuals;
-    told += fit.local.told;
+    const StateElimination& own = fits[k].local;
+    local.information += own.jacobian.transpose() * own.jacobian;
+    local.descent += own.jacobian.transpose() * own.residual;
+    local.residual.segment(k * rows, rows) = own.residual;
+    told += own.told;
   }
   local.residuals -= std::lround(told);
   local.chi_square = local.residual.squaredNorm();
@@ -178,39 +200,40 @@ LocalMisfit SegmentedMisfit::combine(const VectorXd& at, const SegmentFit* fits)
   return local;
 }
 
-void SegmentedMisfit::remember(const VectorXd& at, const SegmentFit* fits) {
-  Anchor anchor{at, MatrixXd(recording_.scales.size(), recording_.starts.size()), {}};
-  for (Index k = 0; k < anchor.states.cols(); ++k) {
-    anchor.states.col(k) = fits[k].accepted + fits[k].local.step;
-    anchor.slopes.push_back(fits[k].local.slopes);
+void SegmentedMisfit::remember(const VectorXd& at, SegmentFit* fits) {
+  Anchor anchor{at, {}};
+  for (Index k = 0; k < recording_.starts.size(); ++k) {
+    SegmentFit& fit = fits[k];
+    MatrixXd hessian = fit.by_state.transpose() * fit.by_state;
+    hessian.diagonal() += precision_.cwiseAbs2();
+    anchor.best.push_back({fit.accepted + fit.local.step, std::move(fit.local.slopes), std::move(fit.by_state),
+                           linalg::calcCholesky(hessian).lower});
   }
-  if (anchors_.size() < kAnchors) {
+  if (anchors_.size() < kept_) {
     anchors_.push_back(std::move(anchor));
   } else {
     anchors_[oldest_] = std::move(anchor);
-    oldest_ = (oldest_ + 1) % kAnchors;
+    oldest_ = (oldest_ + 1) % kept_;
   }
 }
 
-/// Few points at a time, as many as fill a batch: what their segments say takes memory.
 template <class Action>
-void SegmentedMisfit::fitEach(const MatrixXd& points, Action action) {
-  const Index segments = recording_.starts.size();
-  const Index together = std::max<Index>(1, static_cast<Index>(kBatch) / segments);
+void SegmentedMisfit::fitEach(const MatrixXd& points, bool with_derivatives, Action action) {
+  const Index segments = recording_.starts.size(), together = std::max<Index>(1, kBatch / segments);
   for (Index first = 0; first < points.cols(); first += together) {
     const Index count = std::min(together, points.cols() - first);
-    const std::vector<SegmentFit> fits = fitAll(points.middleCols(first, count));
+    std::vector<SegmentFit> fits = begin(points.middleCols(first, count));
+    improve(points.middleCols(first, count), with_derivatives, fits);
     for (Index i = 0; i < count; ++i) {
-      const SegmentFit* const own = fits.data() + i * segments;
-      action(first + i, combine(points.col(first + i), own), own);
+      action(first + i, fits.data() + i * segments);
     }
   }
 }
 
 std::vector<LocalMisfit> SegmentedMisfit::linearizeAll(const MatrixXd& points) {
   std::vector<LocalMisfit> all;
-  fitEach(points, [&](Index i, LocalMisfit local, const SegmentFit* fits) {
-    all.push_back(std::move(local));
+  fitEach(points, true, [&](Index i, SegmentFit* fits) {
+    all.push_back(combine(points.col(i), fits));
     if (all.back().status.ok) {
       remember(points.col(i), fits);
     }
@@ -219,9 +242,17 @@ std::vector<LocalMisfit> SegmentedMisfit::linearizeAll(const MatrixXd& points) {
 }
 
 VectorXd SegmentedMisfit::evaluate(const MatrixXd& points) {
-  VectorXd misfits(points.cols());
-  fitEach(points, [&](Index i, const LocalMisfit& local, const SegmentFit*) {
-    misfits[i] = local.status.ok ? local.misfit : std::numeric_limits<double>::infinity();
+  VectorXd misfits = VectorXd::Constant(points.cols(), std::numeric_limits<double>::infinity());
+  if (anchors_.empty()) {
+    return misfits;  // nothing could be simulated
+  }
+  fitEach(points, false, [&](Index i, const SegmentFit* fits) {
+    double sum = kHalfWidthInformation * points.col(i).squaredNorm();
+    for (Index k = 0; k < recording_.starts.size(); ++k) {
+      const SegmentFit& fit = fits[k];
+      sum += fit.accepted.size() == 0 ? std::numeric_limits<double>::infinity() : fit.misfit - fit.local.gain;
+    }
+    misfits[i] = sum;
   });
   return misfits;
 }

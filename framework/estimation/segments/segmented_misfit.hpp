@@ -20,44 +20,57 @@ class SegmentedMisfit final : public MeasuredMisfit {
   int getSimulations() const override { return simulations_; }
   /// LocalMisfit::residual: those of StateElimination, one segment after the other.
   std::vector<LocalMisfit> linearizeAll(const Eigen::MatrixXd& points) override;
+  /// Without derivatives: the response moves with the states as at the nearest point that was linearised.
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points) override;
 
  private:
-  /// What one segment says at one point.
-  struct SegmentFit {
-    Eigen::Index point = 0, segment = 0;
-    Eigen::VectorXd state;          ///< at which it is simulated next
-    Eigen::VectorXd accepted;       ///< the best so far; empty: none
-    double misfit = 0.0;            ///< there
-    StateElimination local{};       ///< there; without the jacobian
-    Eigen::MatrixXd information{};  ///< u x u
-    Eigen::VectorXd descent{};      ///< u
-    Eigen::Index residuals = 0;     ///< samples that are there
-    SampleStatus status{};
-    bool active = true;
+  /// A segment at the best state of a point: what another point begins with.
+  struct BestState {
+    Eigen::VectorXd state;       ///< s
+    Eigen::MatrixXd slopes;      ///< s x u
+    Eigen::MatrixXd by_state;    ///< n x s, of the whitened response
+    Eigen::MatrixXd hessian;     ///< s x s, lower Cholesky factor of that of the misfit
   };
 
   /// Where the best states are about a point.
   struct Anchor {
-    Eigen::VectorXd at;                   ///< u
-    Eigen::MatrixXd states;               ///< s x S
-    std::vector<Eigen::MatrixXd> slopes;  ///< s x u of each segment
+    Eigen::VectorXd at;           ///< u
+    std::vector<BestState> best;  ///< S
   };
 
-  std::vector<SegmentFit> fitAll(const Eigen::MatrixXd& points);
-  template <class Action>
-  void fitEach(const Eigen::MatrixXd& points, Action action);
-  Eigen::MatrixXd predictStates(const Eigen::VectorXd& at) const;
-  void simulate(const Eigen::MatrixXd& points, const std::vector<SegmentFit*>& fits);
+  /// What one segment says at one point.
+  struct SegmentFit {
+    Eigen::Index point = 0, segment = 0;
+    const BestState* near = nullptr;  ///< null: of no point before
+    Eigen::VectorXd state;            ///< at which it is simulated next
+    Eigen::VectorXd accepted;         ///< the best so far; empty: none
+    double misfit = 0.0;              ///< there
+    StateElimination local{};         ///< there; step and gain alone without derivatives
+    Eigen::MatrixXd by_state{};       ///< there, with derivatives
+    SampleStatus status{};
+    bool active = true;
+  };
+
+  const Anchor* findNearest(const Eigen::VectorXd& at) const;
+  std::vector<SegmentFit> begin(const Eigen::MatrixXd& points) const;
+  void improve(const Eigen::MatrixXd& points, bool with_derivatives, std::vector<SegmentFit>& fits);
+  void simulate(const Eigen::MatrixXd& points, bool with_derivatives, const std::vector<SegmentFit*>& fits);
   void update(const Eigen::VectorXd& response, const Eigen::MatrixXd& derivatives, SegmentFit& fit) const;
+  void takeStep(const Eigen::VectorXd& residual, const Eigen::MatrixXd& derivatives, SegmentFit& fit) const;
   void retreat(SegmentFit& fit) const;
+  Eigen::VectorXd calcAhead(const SegmentFit& fit) const;
   LocalMisfit combine(const Eigen::VectorXd& at, const SegmentFit* fits) const;
-  void remember(const Eigen::VectorXd& at, const SegmentFit* fits);
+  void remember(const Eigen::VectorXd& at, SegmentFit* fits);
+  /// action(i, fits of point i), few points at a time: what their segments say takes memory.
+  template <class Action>
+  void fitEach(const Eigen::MatrixXd& points, bool with_derivatives, Action action);
 
   Simulator& simulator_;
   const SegmentedRecording& recording_;
   const SearchBox box_;
-  const StatePrior prior_;  // ahead: 0
+  const Eigen::VectorXd precision_;  // s, of the states before anything is measured
+  const Eigen::Index samples_;       // that are there
+  const std::size_t kept_;           // anchors
   std::vector<Anchor> anchors_;
   std::size_t oldest_ = 0;
   int simulations_ = 0;

@@ -173,8 +173,7 @@ SegmentGrid makeSegmentGrid(const ExperimentSpec& experiment, double length, dou
   const SamplesFeatureSpec& samples = getSamples(experiment);
   SegmentGrid grid;
   grid.interval = samples.interval;
-  grid.offset = samples.start - std::floor(samples.start / grid.interval + kSlack) * grid.interval;
-  grid.offset = grid.offset < kSlack * grid.interval ? 0.0 : grid.offset;
+  grid.offset = samples.start;
   grid.samples = static_cast<int>(std::lround(length / grid.interval));
   requireSamples(experiment, grid);
   const double there = std::floor((end - grid.offset) / grid.interval + kSlack) + 1.0;
