@@ -161,9 +161,9 @@ void SegmentedMisfit::takeStep(const VectorXd& residual, const MatrixXd& derivat
     return;
   }
   fit.by_state = derivatives.rightCols(s);
-  fit.local = eliminateState(residual, fit.by_state,
-                             derivatives.leftCols(u) * box_.getHalfWidths().asDiagonal(),
-                             {precision_, calcAhead(fit)});
+  fit.local =
+      eliminateState(residual, fit.by_state, derivatives.leftCols(u) * box_.getHalfWidths().asDiagonal(),
+                     {precision_, calcAhead(fit)});
 }
 
 /// Half the way back to the best state so far, or, where there is none, to the one that was given.
@@ -206,8 +206,8 @@ void SegmentedMisfit::remember(const VectorXd& at, SegmentFit* fits) {
     SegmentFit& fit = fits[k];
     MatrixXd hessian = fit.by_state.transpose() * fit.by_state;
     hessian.diagonal() += precision_.cwiseAbs2();
-    anchor.best.push_back({fit.accepted + fit.local.step, std::move(fit.local.slopes), std::move(fit.by_state),
-                           linalg::calcCholesky(hessian).lower});
+    anchor.best.push_back({fit.accepted + fit.local.step, std::move(fit.local.slopes),
+                           std::move(fit.by_state), linalg::calcCholesky(hessian).lower});
   }
   if (anchors_.size() < kept_) {
     anchors_.push_back(std::move(anchor));

@@ -26,10 +26,10 @@ class SegmentedMisfit final : public MeasuredMisfit {
  private:
   /// A segment at the best state of a point: what another point begins with.
   struct BestState {
-    Eigen::VectorXd state;       ///< s
-    Eigen::MatrixXd slopes;      ///< s x u
-    Eigen::MatrixXd by_state;    ///< n x s, of the whitened response
-    Eigen::MatrixXd hessian;     ///< s x s, lower Cholesky factor of that of the misfit
+    Eigen::VectorXd state;     ///< s
+    Eigen::MatrixXd slopes;    ///< s x u
+    Eigen::MatrixXd by_state;  ///< n x s, of the whitened response
+    Eigen::MatrixXd hessian;   ///< s x s, lower Cholesky factor of that of the misfit
   };
 
   /// Where the best states are about a point.

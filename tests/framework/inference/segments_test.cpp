@@ -35,7 +35,7 @@ excitation: {F: {unit: N, tables: [{measured: {file: none.csv, column: F, time: 
 initial: {coordinates: {x: x0}}
 outputs: {x: {coordinate: x}}
 simulation: {duration: 0.5}
-features: [{samples: {outputs: [x], start: 0.02, interval: 0.02, count: 25}}]
+features: [{samples: {outputs: [x], start: 0, interval: 0.02, count: 25}}]
 noise: {stddev: {x: 1e-3}}
 )";
 

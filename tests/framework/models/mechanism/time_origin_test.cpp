@@ -37,14 +37,14 @@ ModelSpec makeDriven(double duration) {
   return model;
 }
 
-struct Run {
+struct Motion {
   Eigen::MatrixXd outputs, derivatives;  ///< derivatives: of all outputs, a column a parameter
 };
 
-Run run(const ModelSpec& model, const Eigen::VectorXd& times, const Eigen::VectorXd& point) {
+Motion run(const ModelSpec& model, const Eigen::VectorXd& times, const Eigen::VectorXd& point) {
   MultibodySimulator simulator(model, times);
   Eigen::MatrixXd response(2 * times.size(), 1);
-  Run found;
+  Motion found;
   SampleStatus status;
   simulator.simulateWithDerivatives(point, response, found.derivatives, &status);
   EXPECT_TRUE(status.ok) << status.reason;
@@ -56,18 +56,18 @@ Run run(const ModelSpec& model, const Eigen::VectorXd& times, const Eigen::Vecto
 TEST(TimeOrigin, GoesOnWhereTheWholeSimulationIs) {
   const Eigen::VectorXd whole_times = Eigen::VectorXd::LinSpaced(41, 0.0, kDuration);
   const Eigen::Vector4d from_start(30.0, 0.3, -0.2, 0.0);
-  const Run whole = run(makeDriven(kDuration), whole_times, from_start);
+  const Motion whole = run(makeDriven(kDuration), whole_times, from_start);
   for (const int first : {0, 7, 9, 18, 25}) {
     const double begin = whole_times[first], duration = 0.5;
     ModelSpec model = makeDriven(duration);
     model.time_origin = name("begin");
     const Eigen::VectorXd times = Eigen::VectorXd::LinSpaced(11, 0.0, duration);
     const Eigen::Vector4d point(30.0, whole.outputs(first, 0), whole.outputs(first, 1), begin);
-    const Run part = run(model, times, point);
+    const Motion part = run(model, times, point);
     EXPECT_LT((part.outputs - whole.outputs.middleRows(first, 11)).cwiseAbs().maxCoeff(), 1e-9) << begin;
     // d y / d k and d y / d (state) of the parts make that of the whole
     const Eigen::Index last = first + 10;
-    const auto at = [&](const Run& of, Eigen::Index row, Eigen::Index times_of, Eigen::Index output,
+    const auto at = [&](const Motion& of, Eigen::Index row, Eigen::Index times_of, Eigen::Index output,
                         Eigen::Index parameter) {
       return of.derivatives(output * times_of + row, parameter);
     };
