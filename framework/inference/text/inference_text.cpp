@@ -133,10 +133,17 @@ std::string describePosterior(const PosteriorEstimate& posterior,
          makeTable(posterior.estimate, parameters, quantities);
 }
 
-std::string describeSegments(const SegmentReport& segments) {
+/// misfits: whether they are not explained.
+std::string describeSegments(const SegmentReport& segments, bool misfits) {
   constexpr int kDigits = 4;
-  return fmt::format("  {} segments of {} s, each with its own initial state ({} numbers, eliminated)\n",
-                     segments.count, toShortText(segments.length, kDigits), segments.states);
+  std::string text =
+      fmt::format("  {} segments of {} s, each with its own initial state ({} numbers, eliminated)\n",
+                  segments.count, toShortText(segments.length, kDigits), segments.states);
+  if (misfits) {
+    text += "    Of what is unstable or chaotic shorter segments may fit: --segments " +
+            toShortText(0.5 * segments.length, kDigits) + "\n";
+  }
+  return text;
 }
 
 /// The noise of outputs of which the file says that it is unknown.
@@ -166,7 +173,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text += describeInferredNoise(*inferred.posterior->fit);
   }
   if (inferred.segments) {
-    text += describeSegments(*inferred.segments);
+    text += describeSegments(*inferred.segments, isMismatch(estimate.statuses));
   }
   if (inferred.prior) {
     text += "  prior: " + inferred.prior->text + "\n";
