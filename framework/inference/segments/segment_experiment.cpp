@@ -9,42 +9,11 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
 #include "framework/experiment/fields/write_value.hpp"
-#include "framework/models/mechanism/equations/switches.hpp"
 
 namespace twinmap {
 namespace {
 
-using Kind = StartState::Kind;
-
 constexpr int kDigits = 6;
-
-[[noreturn]] void refuse(const std::string& what) {
-  throw ExperimentError("segments start from states of their own, which " + what);
-}
-
-/// Throws for what keeps a memory that no initial state of the file gives.
-void requireStartable(const ModelSpec& model) {
-  if (model.source) {
-    refuse("a model from elsewhere does not let be set");
-  }
-  if (!model.system.controllers.empty()) {
-    refuse("the sampled controller '" + model.system.controllers.front().name.text +
-           "' has beside; give what it puts out as a measured excitation");
-  }
-  if (!model.system.constraints.empty()) {
-    refuse("constraints do not leave free; only trees of bodies can be inferred in segments");
-  }
-  if (equations::countSwitches(model.system.elements) > 0) {
-    refuse(
-        "rigid stops, damped contacts and friction that sticks have beside; use friction: {model: "
-        "regularised} or lugre");
-  }
-  for (const OutputSpec& output : model.outputs) {
-    if (output.sensor && !output.sensor->isImmediate()) {
-      refuse("the sensor of output '" + output.name.text + "' has beside (lag, filter, average or delay)");
-    }
-  }
-}
 
 /// The samples of all features, which have one interval.
 const SamplesFeatureSpec& getSamples(const ExperimentSpec& experiment) {
@@ -105,36 +74,6 @@ std::string makeUnique(std::string name, const ModelSpec& model) {
   return name;
 }
 
-/// Sets all states to parameters of these names, in the order of listStartStates().
-class StateSetter {
- public:
-  explicit StateSetter(const std::vector<std::string>& names) : names_(names) {}
-
-  void set(const std::vector<StartState>& states, ModelSpec& model) {
-    model.initial = {};
-    for (const StartState& state : states) {
-      if (state.kind != Kind::kState) {
-        auto& values = state.kind == Kind::kCoordinate ? model.initial.coordinates : model.initial.speeds;
-        values.push_back({{state.name, {}}, take()});
-      }
-    }
-    for (StateSpec& state : model.system.states) {
-      state.initial = take();
-    }
-    model.system.elements.forEachList([this](auto& list) {
-      for (auto& element : list) {
-        forEachOwnState(element, [this](auto& part, const Name&) { part.initial = take(); });
-      }
-    });
-  }
-
- private:
-  Expression take() { return {names_[next_++], {}}; }
-
-  const std::vector<std::string>& names_;
-  std::size_t next_ = 0;
-};
-
 /// As YAML, without the numbers of tables.
 YamlNode writeNames(ExperimentSpec experiment) {
   for (SignalSpec& signal : experiment.model.excitation) {
@@ -169,7 +108,9 @@ double SegmentGrid::calcStart(int k) const {
 
 SegmentGrid makeSegmentGrid(const ExperimentSpec& experiment, double length, double end) {
   constexpr double kSlack = 1e-6;  // of a step, as times are compared when they are read
-  requireStartable(experiment.model);
+  if (const std::string memory = findUnstartable(experiment.model); !memory.empty()) {
+    throw ExperimentError("segments start from states of their own, which " + memory);
+  }
   const SamplesFeatureSpec& samples = getSamples(experiment);
   SegmentGrid grid;
   grid.interval = samples.interval;
@@ -195,17 +136,17 @@ ExperimentSpec makeRecordingExperiment(ExperimentSpec experiment, const SegmentG
 ExperimentSpec makeSegmentExperiment(ExperimentSpec experiment, const SegmentGrid& grid,
                                      const std::vector<StartState>& states, const StateGuess& guess) {
   ModelSpec& model = experiment.model;
-  std::vector<std::string> names;
+  std::vector<Expression> names;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    names.push_back(makeUnique(fmt::format("start_{}", i + 1), model));
+    names.push_back({makeUnique(fmt::format("start_{}", i + 1), model), {}});
   }
-  StateSetter(names).set(states, model);
+  setStartStates(names, model);
   dropUnused(experiment);
   for (std::size_t i = 0; i < states.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double middle = guess.states.row(row).mean(), scale = guess.scales[row];
     ParameterSpec state;
-    state.name.text = names[i];
+    state.name.text = names[i].text;
     state.bounds = {middle - scale, middle + scale, {}};
     model.nuisance.push_back(state);
   }

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/mechanism/system_names.hpp"
 #include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
@@ -19,18 +18,6 @@ namespace {
 
 /// Samples of a straight line: enough against noise, few enough for what moves fast.
 constexpr Index kLine = 8;
-
-Expression findNamed(const std::vector<NamedExpression>& values, const std::string& name) {
-  const auto found = std::find_if(values.begin(), values.end(),
-                                  [&](const NamedExpression& value) { return value.name.text == name; });
-  return found == values.end() ? Expression{"", {}} : found->value;
-}
-
-bool isPrescribed(const ModelSpec& model, const std::string& coordinate) {
-  const std::vector<MotionSpec>& motions = model.system.motions;
-  return std::any_of(motions.begin(), motions.end(),
-                     [&](const MotionSpec& motion) { return motion.coordinate.text == coordinate; });
-}
 
 /// Value and slope of a quantity where a segment begins; NaN where too few samples are there.
 struct Line {
@@ -134,33 +121,6 @@ class Guesser {
 };
 
 }  // namespace
-
-std::vector<StartState> listStartStates(const ModelSpec& model) {
-  const SystemNames names(model.system);
-  std::vector<StartState> states;
-  for (const Kind kind : {Kind::kCoordinate, Kind::kSpeed}) {
-    for (const std::string& name : names.getCoordinateNames()) {
-      if (!isPrescribed(model, name)) {
-        const bool of_coordinate = kind == Kind::kCoordinate;
-        states.push_back(
-            {name, kind, findNamed(of_coordinate ? model.initial.coordinates : model.initial.speeds, name)});
-      }
-    }
-  }
-  const std::vector<std::string>& state_names = names.getStateNames();
-  std::size_t next = 0;
-  for (const StateSpec& state : model.system.states) {
-    states.push_back({state_names[next++], Kind::kState, state.initial});
-  }
-  model.system.elements.forEachList([&](const auto& list) {
-    for (const auto& element : list) {
-      forEachOwnState(element, [&](const auto& part, const Name&) {
-        states.push_back({state_names[next++], Kind::kState, part.initial});
-      });
-    }
-  });
-  return states;
-}
 
 StateGuess guessStates(const ModelSpec& model, const std::vector<StartState>& states, double interval,
                        const SegmentSamples& samples) {

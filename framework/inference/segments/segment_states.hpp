@@ -1,25 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
 #include <vector>
 
-#include "framework/experiment/model/model_spec.hpp"
+#include "framework/models/start_states.hpp"
 
 namespace twinmap {
-
-/// A number that a simulation starts from.
-struct StartState {
-  enum class Kind { kCoordinate, kSpeed, kState };
-
-  std::string name;  ///< of the coordinate, or of the state
-  Kind kind = Kind::kCoordinate;
-  Expression initial{"", {}};  ///< as the file gives it; "": 0
-};
-
-/// The states of a model that are free at a start: coordinates that no signal prescribes, their speeds, the
-/// states of first order and those of elements.
-std::vector<StartState> listStartStates(const ModelSpec& model);
 
 /// About where the states of segments are, and how far they may be from there.
 struct StateGuess {
