@@ -25,6 +25,14 @@ struct MissingTerm {
   double log_evidence = 0.0;  ///< against none
 };
 
+/// How a recording was cut, where it was inferred in segments.
+struct SegmentReport {
+  int count = 0;
+  double length = 0.0;                 ///< s
+  int states = 0;                      ///< of each segment's own
+  std::vector<FeatureInfo> samples{};  ///< of all segments, in the order of the residual
+};
+
 /// What a measurement says about the machine.
 struct InferredMeasurement {
   std::string source;                   ///< the file
@@ -49,6 +57,7 @@ struct InferredMeasurement {
   std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
   std::shared_ptr<const StatedPrior> prior{};             ///< of the experiment; null where all is uniform
   std::vector<Ridge> ridges{};  ///< of the simulator's posterior, where that alone was sampled
+  std::optional<SegmentReport> segments{};
 };
 
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there

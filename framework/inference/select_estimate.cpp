@@ -24,7 +24,7 @@ bool isAccepted(const InferredMeasurement& inferred) {
 /// By the trust model, where there is one, else by the residual of the simulator's best point. The trust
 /// model does not ask whether neighbours are alike; its false alarms are to stay what they are, so that a
 /// tenth of their level is enough here.
-bool isMismatch(const InferredMeasurement& inferred) {
+bool leavesMisfit(const InferredMeasurement& inferred) {
   const PosteriorEstimate* posterior = findSimulated(inferred);
   const bool simulated = posterior != nullptr && posterior->fit->isSimulated();
   if (inferred.trust) {
@@ -51,7 +51,7 @@ void addNoise(const SimulatorFit& fit, Statuses& statuses) {
 
 Statuses listOfSampled(const InferredMeasurement& inferred) {
   Statuses statuses;
-  if (isMismatch(inferred)) {
+  if (leavesMisfit(inferred)) {
     statuses.emplace_back(toString(TrustStatus::kModelMismatch));
   } else if (inferred.posterior->fit && !inferred.posterior->fit->beyond.empty()) {
     statuses.emplace_back(toString(TrustStatus::kAtBounds));
@@ -89,7 +89,7 @@ Statuses listOfOthers(const InferredMeasurement& inferred) {
         statuses.emplace_back(toString(status));
       }
     }
-  } else if (isMismatch(inferred)) {
+  } else if (leavesMisfit(inferred)) {
     statuses.emplace_back(toString(TrustStatus::kModelMismatch));
   }
   addRefinement(inferred, statuses);

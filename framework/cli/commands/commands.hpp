@@ -113,6 +113,7 @@ struct InferArguments {
   std::vector<std::string> trials;  ///< "NAME=FILE": recordings of trials, inferred together
   bool joint = false;               ///< all files and starts together
   std::optional<double> windows;    ///< s: windows of each file, one after another, inferred together
+  std::optional<double> segments;   ///< s: each file cut into segments with initial states of their own
   bool json = false, csv = false;   ///< at most one; neither: a human-readable table
   bool follow = false;              ///< measurements from the standard input, JSON lines out
   std::optional<bool> refine;       ///< none: as the experiment says
@@ -263,6 +264,7 @@ void compare(const CompareArguments& arguments);
 void infer(const InferArguments& arguments);
 /// Of several recordings together: where trials, windows or joint are given.
 void inferJointly(const InferArguments& arguments);
+void inferInSegments(const InferArguments& arguments);
 
 /// Says which terms a model lacks that is to explain measurements, and writes the corrected experiment; or,
 /// without measurements, what they would not notice.

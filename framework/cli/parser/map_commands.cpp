@@ -24,6 +24,13 @@ void addJointInference(CLI::App& command, InferArguments& arguments) {
                   "agree")
       ->type_name("S")
       ->check(CLI::PositiveNumber);
+  command
+      .add_option(
+          "--segments", arguments.segments,
+          "Cut each file into segments of S seconds, each from an initial state of its own: for what is "
+          "unstable or chaotic")
+      ->type_name("S")
+      ->check(CLI::PositiveNumber);
 }
 
 void addPosterior(CLI::App& command, InferArguments& arguments) {

@@ -24,6 +24,7 @@ void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& s
   const Index before = surface.residual.size();
   surface.residual.conservativeResize(before + local.residual.size());
   surface.residual.tail(local.residual.size()) = local.residual;
+  surface.residuals += local.residuals;
   surface.weights.conservativeResize(surface.residual.size());
   auto weights = surface.weights.tail(local.residual.size());
   if (part.losses.empty()) {
@@ -49,7 +50,7 @@ double calcDegrees(const LocalSurface& surface) {
   const MatrixXd inverse =
       linalg::solveCholesky(linalg::calcCholesky(hessian).lower, MatrixXd::Identity(u, u));
   const double determined = inverse.cwiseProduct(surface.information).sum();
-  return std::max(1.0, static_cast<double>(surface.residual.size()) - determined);
+  return std::max(1.0, static_cast<double>(surface.residuals) - determined);
 }
 
 }  // namespace
@@ -65,13 +66,16 @@ int MisfitSurface::getSimulations() const {
 std::size_t MisfitSurface::countWindows() const {
   std::size_t count = 0;
   for (const MeasuredPart& part : parts_) {
-    count = std::max(count, part.model->getWindows().size());
+    count = std::max(count, part.model == nullptr ? 1 : part.model->getWindows().size());
   }
   return count;
 }
 
 void MisfitSurface::setWindow(std::size_t window) {
   for (MeasuredPart& part : parts_) {
+    if (part.model == nullptr) {
+      continue;
+    }
     const std::vector<GrowingWindow>& windows = part.model->getWindows();
     part.window = std::min(window, windows.size() - 1);
     part.misfit->setWindow(windows[part.window]);

@@ -5,7 +5,7 @@
 
 #include "framework/estimation/log_coordinates.hpp"
 #include "framework/estimation/posterior/noise/residual_loss.hpp"
-#include "framework/estimation/refined/misfit.hpp"
+#include "framework/estimation/refined/measured_misfit.hpp"
 #include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
@@ -17,9 +17,10 @@ struct LocalSurface {
   bool simulated = false;  ///< if not, the rest is empty
   Eigen::VectorXd at;      ///< u
   double chi_square = 0.0;
-  double loss = 0.0;     ///< chi-square where the loss is plain
-  double misfit = 0.0;   ///< loss and the prior's misfit, which is 0 where it is uniform
-  double degrees = 0.0;  ///< of freedom: residuals less the parameters that they determine
+  double loss = 0.0;           ///< chi-square where the loss is plain
+  double misfit = 0.0;         ///< loss and the prior's misfit, which is 0 where it is uniform
+  double degrees = 0.0;        ///< of freedom: residuals less the parameters that they determine
+  Eigen::Index residuals = 0;  ///< independent ones
   Eigen::MatrixXd information;
   Eigen::VectorXd descent;
   Eigen::VectorXd residual;  ///< whitened; of one measurement after the other
@@ -28,8 +29,8 @@ struct LocalSurface {
 
 /// One measurement of those that a surface explains together.
 struct MeasuredPart {
-  Misfit* misfit;                     ///< of all unknown parameters of its trial
-  const RefinementModel* model;       ///< of its trial
+  MeasuredMisfit* misfit;             ///< of all unknown parameters of its trial
+  const RefinementModel* model;       ///< of its trial; null: without windows and hypotheses
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters these are
   /// Of each of the model's windows; empty: a sum of squares.
   std::vector<ResidualLoss> losses{};

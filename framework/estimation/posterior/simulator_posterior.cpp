@@ -13,6 +13,7 @@
 #include "framework/estimation/posterior/search_team.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
+#include "framework/estimation/segments/segmented_misfit.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -67,6 +68,11 @@ class ProblemSurface {
   std::vector<MeasuredPart> makeParts(const PosteriorProblem& problem) {
     std::vector<MeasuredPart> parts;
     for (const MeasuredTrial& trial : problem.trials) {
+      if (trial.segments) {
+        segmented_.push_back(std::make_unique<SegmentedMisfit>(*trial.simulator, *trial.segments));
+        parts.push_back({segmented_.back().get(), nullptr, trial.unknown});
+        continue;
+      }
       parts_.push_back(std::make_unique<Part>(trial));
       parts.push_back(
           {&parts_.back()->misfit, trial.model, trial.unknown, makeLosses(trial.noise, *trial.model)});
@@ -77,6 +83,7 @@ class ProblemSurface {
   const LogCoordinates coordinates_;
   const Prior prior_;
   std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<SegmentedMisfit>> segmented_;
   MisfitSurface surface_;
 };
 
@@ -112,10 +119,13 @@ void setBest(const BasinSearch& found, const LogCoordinates& coordinates, Simula
 /// Of a single measurement, the residual as its hypothesis of the noise explains it.
 ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTrial& trial,
                                        const LocalSurface& best) {
+  if (trial.segments) {
+    return {best.residual, best.degrees, {}};
+  }
   MatrixXd jacobian(best.residual.size(), 0);
   if (!trial.noise.outputs.empty()) {
     const VectorXd box = surface.getCoordinates().toBox(best.at);
-    jacobian = surface.getParts().front().misfit->linearize(box(trial.unknown)).jacobian;
+    jacobian = surface.getParts().front().misfit->linearizeAll(box(trial.unknown)).front().jacobian;
   }
   return ResidualLoss(trial.noise, *trial.model, trial.model->getWhole())
       .standardize(best.residual, jacobian, best.degrees);

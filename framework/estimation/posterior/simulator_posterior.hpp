@@ -9,6 +9,8 @@
 #include "framework/estimation/posterior/basin_search.hpp"
 #include "framework/estimation/posterior/posterior_draws.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
+#include "framework/estimation/refined/misfit.hpp"
+#include "framework/estimation/segments/segmented_recording.hpp"
 
 namespace twinmap {
 
@@ -62,6 +64,8 @@ struct MeasuredTrial {
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
   NoiseHypothesis noise{};
   std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
+  /// In the place of model, features, held and noise, where the trial is a recording in segments.
+  std::shared_ptr<const SegmentedRecording> segments{};
 };
 
 /// What is known of a machine: one or several measurements, and what was known before.

@@ -37,30 +37,38 @@ void collectWords(const YamlNode& node, std::set<std::string>& words) {
 
 }  // namespace
 
-std::vector<std::string> listUnusedParameters(const YamlNode& experiment) {
+std::vector<std::string> listUnused(const YamlNode& experiment, const std::string& section) {
   // what names parameters without using them
-  static const std::set<std::string> kElsewhere = {"name",    "description", "parameters",  "priors",
-                                                   "derived", "design",      "inverse_map", "evaluation",
-                                                   "gates",   "report",      "sweep"};
-  const YamlNode* parameters = experiment.find("parameters");
+  static const std::set<std::string> kElsewhere = {"name",       "description", "parameters", "nuisance",
+                                                   "priors",     "derived",     "design",     "inverse_map",
+                                                   "evaluation", "gates",       "report",     "sweep"};
+  const YamlNode* parameters = experiment.find(section);
   if (parameters == nullptr || experiment.find("system") == nullptr) {
     return {};
   }
   std::set<std::string> words;
-  for (const YamlEntry& section : experiment.entries) {
-    if (kElsewhere.count(section.key) == 0) {
-      collectWords(section.value, words);
+  for (const YamlEntry& entry : experiment.entries) {
+    if (kElsewhere.count(entry.key) == 0) {
+      collectWords(entry.value, words);
     }
   }
   std::vector<std::string> unused;
   for (const YamlEntry& parameter : parameters->entries) {
     if (words.count(parameter.key) == 0) {
-      unused.push_back(
-          "parameters." + parameter.key +
-          ": nothing uses this parameter: name it in an expression of the system, or take it out");
+      unused.push_back(parameter.key);
     }
   }
   return unused;
+}
+
+std::vector<std::string> listUnusedParameters(const YamlNode& experiment) {
+  std::vector<std::string> sentences;
+  for (const std::string& name : listUnused(experiment, "parameters")) {
+    sentences.push_back(
+        "parameters." + name +
+        ": nothing uses this parameter: name it in an expression of the system, or take it out");
+  }
+  return sentences;
 }
 
 }  // namespace twinmap

@@ -25,6 +25,9 @@ struct ModelSpec {
   InitialSpec initial;
   std::vector<OutputSpec> outputs;
   SimulationSpec simulation;
+  /// The input that is the time (s) of the excitation and of `t` at which a simulation begins; not in the
+  /// file: inference in segments sets it. None: 0.
+  std::optional<Name> time_origin{};
 
   // compiled once (experiment_spec.cpp)
   ModelSpec();

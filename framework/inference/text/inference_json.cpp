@@ -246,6 +246,11 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (inferred.prior) {
     json["prior"] = inferred.prior->text;
   }
+  if (inferred.segments) {
+    json["segments"] = {{"count", inferred.segments->count},
+                        {"length", inferred.segments->length},
+                        {"states", inferred.segments->states}};
+  }
   addRecording(inferred, json);
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);

@@ -133,6 +133,19 @@ std::string describePosterior(const PosteriorEstimate& posterior,
          makeTable(posterior.estimate, parameters, quantities);
 }
 
+/// misfits: whether they are not explained.
+std::string describeSegments(const SegmentReport& segments, bool misfits) {
+  constexpr int kDigits = 4;
+  std::string text =
+      fmt::format("  {} segments of {} s, each with its own initial state ({} numbers, eliminated)\n",
+                  segments.count, toShortText(segments.length, kDigits), segments.states);
+  if (misfits) {
+    text += "    Of what is unstable or chaotic shorter segments may fit: --segments " +
+            toShortText(0.5 * segments.length, kDigits) + "\n";
+  }
+  return text;
+}
+
 /// The noise of outputs of which the file says that it is unknown.
 std::string describeInferredNoise(const SimulatorFit& fit) {
   constexpr int kDigits = 3;
@@ -158,6 +171,9 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   std::string text = describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters);
   if (inferred.posterior && inferred.posterior->fit) {
     text += describeInferredNoise(*inferred.posterior->fit);
+  }
+  if (inferred.segments) {
+    text += describeSegments(*inferred.segments, isMismatch(estimate.statuses));
   }
   if (inferred.prior) {
     text += "  prior: " + inferred.prior->text + "\n";

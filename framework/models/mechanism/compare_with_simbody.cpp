@@ -116,7 +116,7 @@ class Comparison {
   double findPhase(const std::vector<double>& events, double time) {
     double begin = 0.0;
     for (const Boundary& boundary :
-         calcBoundaries(model_.excitation, events, context_.model.simulation.duration)) {
+         calcBoundaries(model_.excitation, events, 0.0, context_.model.simulation.duration)) {
       begin = boundary.time <= time ? boundary.time : begin;
     }
     return begin;

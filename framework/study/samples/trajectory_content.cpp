@@ -140,7 +140,7 @@ YamlNode writeResponse(const ResponseLayout& layout) {
 std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
   const auto& [parameters, nuisance, inputs, priors, constants, system, source, excitation, initial, outputs,
-               simulation] = model;
+               simulation, time_origin] = model;
   static_cast<void>(priors);  // no response depends on what is known of its parameters
   const std::vector<ParameterSpec> sampled = collectSampled(model);  // all three; which is which is no matter
   FieldWriter content;
@@ -159,6 +159,9 @@ std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout&
   content.requiredMap("outputs", outputs, "");
   YamlNode root = content.takeNode();
   root.entries.push_back({"simulation", {}, writeSimulation(simulation)});
+  if (time_origin) {
+    root.entries.push_back({"time_origin", {}, writeValue(*time_origin)});
+  }
   root.entries.push_back({"response", {}, writeResponse(layout)});
   return writeYaml(root);
 }

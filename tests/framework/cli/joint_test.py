@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 
-from support import FolderTestCase, call
+from support import EXPERIMENTS, FolderTestCase, call
 
 OSCILLATOR = """
 name: oscillator
@@ -162,6 +162,25 @@ class Joint(FolderTestCase):
         self.assertEqual(found["parameters"].keys(), expected["parameters"].keys())
         for name, one in expected["parameters"].items():
             self.assertAlmostEqual(found["parameters"][name]["mean"], one["mean"], delta=1e-3 * one["sd"])
+
+    def test_segments_of_an_unstable_machine(self):
+        # the recording was made with c = 1.457e-5, g0 = 1.45e-3, d = 0.15 and a controller that the file does not have
+        levitation = EXPERIMENTS / "mechanisms" / "magnetic_levitation.yaml"
+        arguments = [levitation, levitation.with_suffix(".csv"), "--segments", "0.1"]
+        found = json.loads(self.infer(*arguments, "--json"))
+        self.assertEqual(found["statuses"], ["ok"])
+        self.assertEqual(found["segments"], {"count": 20, "length": 0.1, "states": 2})
+        self.assertAlmostEqual(found["trust"]["degrees"], 2000 - 20 * 2 - 3, delta=1)
+        for name, true in (("c", 1.457e-5), ("g0", 1.45e-3), ("d", 0.15)):
+            self.assertLess(abs(found["parameters"][name]["mean"] - true), 4 * found["parameters"][name]["sd"])
+        table = self.infer(*arguments)
+        self.assertIn("20 segments of 0.1 s, each with its own initial state (2 numbers, eliminated)", table)
+        rows = self.infer(*arguments, "--csv").splitlines()
+        self.assertEqual(len(rows), 4)
+        short = call("infer", *arguments[:3], "0.002")
+        self.assertIn("2 samples of 1 outputs, which do not determine its 2 initial states", short.stderr)
+        both = call("infer", *arguments, "--joint")
+        self.assertIn("leave --joint, --trial and --windows out", both.stderr)
 
     def test_errors_say_what_to_do(self):
         one = call("infer", self.experiment, self.a, "--joint")

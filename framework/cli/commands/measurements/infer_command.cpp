@@ -232,6 +232,10 @@ void keepFreedMemory() {
 
 void infer(const InferArguments& arguments) {
   keepFreedMemory();
+  if (arguments.segments) {
+    inferInSegments(arguments);
+    return;
+  }
   if (!arguments.trials.empty() || arguments.joint || arguments.windows) {
     inferJointly(arguments);
     return;

@@ -1,12 +1,12 @@
 #include <fmt/core.h>
 
 #include <deque>
-#include <filesystem>
 #include <iostream>
 #include <set>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/measurements/experiment_of_run.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/direct_inference.hpp"
@@ -105,12 +105,6 @@ void requireJointArguments(const InferArguments& arguments) {
   if (!arguments.draws.empty()) {
     throw ExperimentError("--draws are of one measurement; leave it out, or --joint, --trial and --windows");
   }
-}
-
-/// The experiment's file; of a run that it keeps.
-std::string findExperimentFile(const std::string& run) {
-  const std::filesystem::path resolved = std::filesystem::path(run) / "resolved.yaml";
-  return std::filesystem::is_directory(run) && std::filesystem::exists(resolved) ? resolved.string() : run;
 }
 
 /// The only recording of a trial: as its own experiment file would infer it.

@@ -65,6 +65,7 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   const Symbols parameters = getParameters(recorded, with_derivatives);
   LaneModel model;
   model.coordinate_count = recorded.coordinate_count;
+  model.origin_parameter = recorded.origin_parameter;
   model.hidden_count = recorded.mode_count + static_cast<int>(recorded.sampling.hidden_rates.size());
   model.counts = {countStates(recorded), recorded.parameter_count, recorded.sampling.input_count};
   model.excitation = recorded.excitation;

@@ -12,6 +12,7 @@ namespace twinmap {
 struct LaneModel {
   program::InputCounts counts;
   int coordinate_count = 0;
+  int origin_parameter = -1;      ///< ModelSpec::time_origin, among the sampled
   int hidden_count = 0;           ///< states of sensors and controllers, and modes of switches
   RecordedExcitation excitation;  ///< its symbols are not to be used
   RecordedSampling sampling;      ///< likewise

@@ -32,7 +32,8 @@ void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
   fillInitial(parameters, all.topRows(model_.counts.states), sample);
   const Index delays = static_cast<Index>(model_.sampling.delays.size());
   const Index events = all.rows() - model_.counts.states - delays;
-  fillTimes({all.middleRows(model_.counts.states, events), all.bottomRows(delays)}, sample);
+  fillTimes({all.middleRows(model_.counts.states, events), all.bottomRows(delays), getOrigin(parameters)},
+            sample);
 }
 
 VectorXd LaneStart::calcStart(const Parameters& parameters) {
@@ -43,15 +44,16 @@ VectorXd LaneStart::calcStart(const Parameters& parameters) {
     return values;
   }
   const auto events = values.segment(model_.counts.states, model_.excitation.events.size());
-  fillPhaseInputs(model_.excitation, std::vector<double>(events.begin(), events.end()), 0.0,
-                  inputs.phase_inputs.data());
+  const double origin = getOrigin(parameters);
+  fillPhaseInputs(model_.excitation, std::vector<double>(events.begin(), events.end()), origin,
+                  inputs.phase_inputs.data(), origin);
   return start_.calc(inputs);
 }
 
 /// Thousands of instants are the same for most samples.
 void LaneStart::fillTimes(const SampleTimes& times, lanes::Sample& sample) {
   const bool same = !last_sample_.phases.empty() && times.events == last_times_.events &&
-                    times.delays == last_times_.delays;
+                    times.delays == last_times_.delays && times.origin == last_times_.origin;
   if (!same) {
     last_sample_.phases.clear();  // where this fails nothing is kept
     fillPhases(model_, times, spec_.simulation.duration, output_times_, last_sample_);

@@ -26,6 +26,9 @@ class LaneStart {
   Eigen::VectorXd solveEquilibrium(const Eigen::Ref<const Eigen::VectorXd>& parameters);
 
  private:
+  double getOrigin(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+    return model_.origin_parameter < 0 ? 0.0 : parameters[model_.origin_parameter];
+  }
   /// Values of the start program, where what is prescribed is as in the first phase.
   Eigen::VectorXd calcStart(const Eigen::Ref<const Eigen::VectorXd>& parameters);
   void fillInitial(const Eigen::Ref<const Eigen::VectorXd>& parameters, Eigen::MatrixXd states,

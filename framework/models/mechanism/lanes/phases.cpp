@@ -20,6 +20,7 @@ constexpr double kRounding = 1e-9;
 /// Something that begins a phase.
 struct Mark {
   double time;
+  double of_excitation;                  ///< its time there
   const RecordedClock* clock = nullptr;  ///< null: an event of the excitation
   int slot = 0;
   const std::vector<double>* slopes = nullptr;  ///< of its time; null: nothing moves it
@@ -74,9 +75,14 @@ class PhaseMaker {
 
  private:
   void addEvents() {
-    const std::vector<Boundary> boundaries = calcBoundaries(model_.excitation, events_, duration_);
+    const double origin = times_.origin, slack = origin == 0.0 ? 0.0 : kRounding * duration_;
+    std::vector<Boundary> boundaries =
+        calcBoundaries(model_.excitation, events_, origin, origin + duration_ - slack);
+    if (boundaries.size() > 2 && boundaries[1].time <= origin + slack) {
+      boundaries.erase(boundaries.begin());
+    }
     for (std::size_t i = 0; i + 1 < boundaries.size(); ++i) {
-      marks_.push_back({boundaries[i].time});
+      marks_.push_back({i == 0 ? 0.0 : boundaries[i].time - origin, boundaries[i].time});
       if (boundaries[i].event >= 0) {
         marks_.back().slopes = findSlopes(times_.events, boundaries[i].event, 1.0);
       }
@@ -102,7 +108,7 @@ class PhaseMaker {
         return;
       }
       if (time > 0.0 || (clock.sign > 0.0 && time == 0.0)) {
-        marks_.push_back({time, &clock, static_cast<int>(k % clock.slots), slopes});
+        marks_.push_back({time, times_.origin + time, &clock, static_cast<int>(k % clock.slots), slopes});
       }
     }
   }
@@ -127,7 +133,7 @@ class PhaseMaker {
       phase.begin_slopes = *mark.slopes;
     }
     if (!joins || mark.clock == nullptr) {
-      fillPhaseInputs(model_.excitation, events_, mark.time, phase.inputs.data());
+      fillPhaseInputs(model_.excitation, events_, mark.of_excitation, phase.inputs.data(), times_.origin);
     }
     if (mark.clock != nullptr) {
       phase.inputs[mark.clock->input] = 1.0 + mark.slot;

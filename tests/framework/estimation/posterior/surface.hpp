@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/refined/misfit.hpp"
 #include "tests/framework/estimation/refined/problem.hpp"
 
 namespace twinmap::testing {

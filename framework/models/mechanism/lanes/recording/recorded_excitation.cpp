@@ -31,8 +31,14 @@ int getDegree(TableInterpolation interpolation) {
 /// Appends the terms of one signal after the other.
 class ExcitationRecorder {
  public:
-  ExcitationRecorder(program::Recorder& recorder, const NamedValues<Symbol>& names)
-      : recorder_(recorder), numbers_{names} {}
+  ExcitationRecorder(program::Recorder& recorder, const NamedValues<Symbol>& names, bool has_origin)
+      : recorder_(recorder), numbers_{names} {
+    excitation_.clock = recorder_.time();
+    if (has_origin) {
+      excitation_.origin_input = excitation_.input_count++;
+      excitation_.clock = excitation_.clock + recorder_.phaseInput(excitation_.origin_input);
+    }
+  }
 
   void add(const SignalSpec& spec) {
     signal_ = Symbol(0.0);
@@ -49,10 +55,10 @@ class ExcitationRecorder {
  private:
   using Shapes = ShapeMaker<Symbol, const RecordedNumbers>;
 
-  static Symbol calcTerm(const PulseSpec& pulse, Shapes& shapes) { return shapes.make(pulse).value; }
+  Symbol calcTerm(const PulseSpec& pulse, Shapes& shapes) const { return shapes.make(pulse).value; }
   template <class Term>
-  Symbol calcTerm(const Term& term, Shapes& shapes) {
-    const Symbol elapsed = recorder_.time() - shapes.calcTime(term.start, "start");
+  Symbol calcTerm(const Term& term, Shapes& shapes) const {
+    const Symbol elapsed = excitation_.clock - shapes.calcTime(term.start, "start");
     return shapes.make(term).calc(elapsed);
   }
 
@@ -60,7 +66,7 @@ class ExcitationRecorder {
     const int degree = getDegree(table.interpolation), first = excitation_.input_count;
     excitation_.tables.push_back({first, degree, calcTablePieces(table)});
     excitation_.input_count += degree + 2;
-    Symbol clock = recorder_.time();
+    Symbol clock = excitation_.clock;
     if (const Expression* delay = table.findDelay()) {
       const Symbol late = numbers_.names.calc(*delay);
       clock = clock + late;
@@ -111,8 +117,8 @@ void fillTable(const RecordedExcitation::Table& table, double zero, double begin
 }  // namespace
 
 RecordedExcitation recordExcitation(const std::vector<SignalSpec>& signals, program::Recorder& recorder,
-                                    const NamedValues<Symbol>& names) {
-  ExcitationRecorder excitation(recorder, names);
+                                    const NamedValues<Symbol>& names, bool has_origin) {
+  ExcitationRecorder excitation(recorder, names, has_origin);
   for (const SignalSpec& signal : signals) {
     excitation.add(signal);
   }
@@ -120,10 +126,10 @@ RecordedExcitation recordExcitation(const std::vector<SignalSpec>& signals, prog
 }
 
 std::vector<Boundary> calcBoundaries(const RecordedExcitation& excitation, const std::vector<double>& events,
-                                     double duration) {
+                                     double first, double last) {
   std::vector<Boundary> boundaries;
   const auto add = [&](double time, int event) {
-    if (time > 0.0 && time < duration) {
+    if (time > first && time < last) {
       boundaries.push_back({time, event});
     }
   };
@@ -132,13 +138,16 @@ std::vector<Boundary> calcBoundaries(const RecordedExcitation& excitation, const
   }
   for (const RecordedExcitation::Table& table : excitation.tables) {
     const double zero = table.getZero(events);
-    for (const TablePiece& piece : table.pieces) {
-      add(zero + piece.begin, table.zero);
-      add(zero + piece.end, table.zero);
+    const auto within =
+        std::partition_point(table.pieces.begin(), table.pieces.end(),
+                             [&](const TablePiece& piece) { return !(zero + piece.end > first); });
+    for (auto piece = within; piece != table.pieces.end() && zero + piece->begin < last; ++piece) {
+      add(zero + piece->begin, table.zero);
+      add(zero + piece->end, table.zero);
     }
   }
-  boundaries.push_back({0.0, -1});
-  boundaries.push_back({duration, -1});
+  boundaries.push_back({first, -1});
+  boundaries.push_back({last, -1});
   std::stable_sort(boundaries.begin(), boundaries.end(),
                    [](const Boundary& a, const Boundary& b) { return a.time < b.time; });
   const auto same = [](const Boundary& a, const Boundary& b) { return a.time == b.time; };
@@ -147,7 +156,10 @@ std::vector<Boundary> calcBoundaries(const RecordedExcitation& excitation, const
 }
 
 void fillPhaseInputs(const RecordedExcitation& excitation, const std::vector<double>& events, double begin,
-                     double* inputs) {
+                     double* inputs, double origin) {
+  if (excitation.origin_input >= 0) {
+    inputs[excitation.origin_input] = origin;
+  }
   for (const RecordedExcitation::Term& term : excitation.terms) {
     const bool on = events[term.begin] <= begin && (term.end < 0 || begin < events[term.end]);
     inputs[term.flag] = on ? 1.0 : 0.0;

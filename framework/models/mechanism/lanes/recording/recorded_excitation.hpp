@@ -33,25 +33,29 @@ struct RecordedExcitation {
   std::vector<Term> terms;
   std::vector<Table> tables;
   int input_count = 0;
+  program::Symbol clock;  ///< the excitation's time; that of the integration where origin_input is -1, else
+                          ///< so much later
+  int origin_input = -1;  ///< ModelSpec::time_origin
 };
 
-/// `names`: parameters and constants.
+/// `names`: parameters and constants; has_origin: whether the excitation's time begins at a phase input.
 RecordedExcitation recordExcitation(const std::vector<SignalSpec>& signals, program::Recorder& recorder,
-                                    const NamedValues<program::Symbol>& names);
+                                    const NamedValues<program::Symbol>& names, bool has_origin);
 
-/// A time at which a phase begins, s; `event`: the one of parameters that it is, or -1.
+/// A time of the excitation at which a phase begins, s; `event`: the one of parameters that it is, or -1.
 struct Boundary {
   double time;
   int event;
 };
 
-/// 0, the times in (0, duration) at which a signal may jump or bend, and the duration; increasing, each once.
-/// `events`: values of RecordedExcitation::events.
+/// `first`, the times in (first, last) at which a signal may jump or bend, and `last`; increasing, each once.
+/// `events`: values of RecordedExcitation::events. Cost: that of those in between.
 std::vector<Boundary> calcBoundaries(const RecordedExcitation& excitation, const std::vector<double>& events,
-                                     double duration);
+                                     double first, double last);
 
-/// The phase inputs of the phase that begins at `begin` (input_count of them).
+/// The phase inputs of the phase that begins at `begin` (input_count of them), of a simulation that begins at
+/// `origin`.
 void fillPhaseInputs(const RecordedExcitation& excitation, const std::vector<double>& events, double begin,
-                     double* inputs);
+                     double* inputs, double origin = 0.0);
 
 }  // namespace twinmap

@@ -44,9 +44,12 @@ class ModelRecorder {
   RecordedModel record() {
     RecordedModel recorded;
     recorded.parameter_count = static_cast<int>(countSampled(model_));
+    recorded.origin_parameter = findOrigin();
     recorded.coordinate_count = system_.coordinate_count;
     recorded.state_count = system_.state_count;
-    recorded.excitation = recordExcitation(model_.excitation, *recorder_, values_);
+    recorded.excitation =
+        recordExcitation(model_.excitation, *recorder_, values_, model_.time_origin.has_value());
+    clock_ = recorded.excitation.clock;
     signals_ = recorded.excitation.signals;
     signal_rates_ = calcRates(signals_);
     recordMotion(recorded);
@@ -78,6 +81,14 @@ class ModelRecorder {
 
   ModelMotion<Symbol> calcMotion(const ModelState<Symbol>& state) {
     return equations::calcModelMotion(model_, names_, values_, system_, state);
+  }
+
+  int findOrigin() const {
+    const std::vector<ParameterSpec> sampled = collectSampled(model_);
+    const auto found = std::find_if(sampled.begin(), sampled.end(), [this](const ParameterSpec& one) {
+      return model_.time_origin && one.name.text == model_.time_origin->text;
+    });
+    return found == sampled.end() ? -1 : static_cast<int>(found - sampled.begin());
   }
 
   /// Of the conditions of constraints; all where nothing is known.
@@ -212,8 +223,8 @@ class ModelRecorder {
 
   /// In motion, with prescribed coordinates as their signals say.
   ModelState<Symbol> makeState(Symbols first_order) {
-    ModelState<Symbol> state{recorder_->time(),      getCoordinates(), getSpeeds(),
-                             std::move(first_order), signals_,         signal_rates_};
+    ModelState<Symbol> state{clock_,   getCoordinates(), getSpeeds(), std::move(first_order),
+                             signals_, signal_rates_};
     for (const MotionSpec& motion : model_.system.motions) {
       const int i = names_.findCoordinate(motion.coordinate);
       const Symbol& signal = signals_[findSignal(model_, motion.follows)];
@@ -366,6 +377,7 @@ class ModelRecorder {
   std::unique_ptr<program::Recorder> recorder_;
   NamedValues<Symbol> values_;
   SystemValues<Symbol> system_;
+  Symbol clock_;
   Symbols signals_, signal_rates_;
   Symbols watched_;  ///< rates, of states behind the modes
   int mode_count_ = 0;

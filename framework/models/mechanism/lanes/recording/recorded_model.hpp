@@ -23,8 +23,9 @@ struct RecordedModel {
 
   std::unique_ptr<program::Recorder> recorder;
   int parameter_count = 0, coordinate_count = 0;
-  int state_count = 0;  ///< of first order, without modes and hidden ones
-  int mode_count = 0;   ///< states of switches: their modes, and what is watched for their events
+  int state_count = 0;        ///< of first order, without modes and hidden ones
+  int mode_count = 0;         ///< states of switches: their modes, and what is watched for their events
+  int origin_parameter = -1;  ///< ModelSpec::time_origin, among the parameters
   RecordedExcitation excitation;
   Symbols derivatives;        ///< of the states with respect to time
   Symbols pivots;             ///< not positive where the mass matrix or a loop is singular

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace twinmap::cli {
+
+/// The experiment's file; of a run that it keeps.
+inline std::string findExperimentFile(const std::string& run) {
+  const std::filesystem::path resolved = std::filesystem::path(run) / "resolved.yaml";
+  return std::filesystem::is_directory(run) && std::filesystem::exists(resolved) ? resolved.string() : run;
+}
+
+}  // namespace twinmap::cli

@@ -1,0 +1,87 @@
+#include <iostream>
+
+#include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/measurements/experiment_of_run.hpp"
+#include "framework/cli/waiting_line.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/sweep/trials.hpp"
+#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/segments/segment_inference.hpp"
+#include "framework/inference/text/inference_text.hpp"
+
+namespace twinmap::cli {
+namespace {
+
+/// Of a round, unless given: a thousand segments make a posterior narrow and normal, whose standard deviation
+/// is then right to 2 %.
+constexpr int kDraws = 2048;
+
+void requireSegmentArguments(const InferArguments& arguments) {
+  if (!arguments.trials.empty() || arguments.joint || arguments.windows) {
+    throw ExperimentError("--segments infers each file by itself; leave --joint, --trial and --windows out");
+  }
+  if (arguments.follow || arguments.files.empty()) {
+    throw ExperimentError("--segments cuts recordings in files; give files of measurements");
+  }
+  if (arguments.refine || !arguments.posterior_from.empty()) {
+    throw ExperimentError(
+        "segments are inferred by simulation alone; leave --refine, --no-refine and --posterior-from out");
+  }
+  if (!arguments.page.empty() || !arguments.draws.empty() || arguments.diagnose) {
+    throw ExperimentError(
+        "--page, --draws and --diagnose are not for segments; leave them or --segments out");
+  }
+}
+
+ExperimentSpec loadWithoutTrials(const std::string& file) {
+  std::vector<Trial> trials = expandTrials(loadExperimentTree(file));
+  if (trials.size() > 1 || !trials.front().name.empty()) {
+    throw ExperimentError(
+        "segments are of a recording of one experiment, and this one has trials; take the "
+        "trial's keys into a file of its own");
+  }
+  return readExperiment(trials.front().tree);
+}
+
+void print(const InferredMeasurement& inferred, const SegmentInference& inference,
+           const InferArguments& arguments, bool is_first) {
+  const std::vector<ParameterSpec>& parameters = inference.getExperiment().model.parameters;
+  const std::vector<FeatureInfo>& samples = inferred.segments->samples;
+  if (arguments.json) {
+    std::cout << makeInferenceJson(inferred, parameters, samples) << "\n";
+  } else if (arguments.csv) {
+    std::cout << makeInferenceCsvRows(inferred, parameters, false);
+  } else {
+    std::cout << (is_first ? "" : "\n") << makeInferenceTable(inferred, parameters, samples);
+  }
+}
+
+}  // namespace
+
+void inferInSegments(const InferArguments& arguments) {
+  requireSegmentArguments(arguments);
+  ExperimentSpec experiment = loadWithoutTrials(findExperimentFile(arguments.run));
+  const Eigen::VectorXd known = collectKnown(experiment.model.inputs, parseKnownValues(arguments.known));
+  const int draws = arguments.posterior_draws > 0 ? arguments.posterior_draws : kDraws;
+  const SegmentInference inference(std::move(experiment), *arguments.segments, known, draws);
+  std::vector<std::optional<double>> starts(arguments.starts.begin(), arguments.starts.end());
+  if (starts.empty()) {
+    starts.emplace_back(std::nullopt);
+  }
+  if (arguments.csv) {
+    std::cout << makeInferenceCsvHeader(false, false);
+  }
+  bool is_first = true;
+  for (const std::string& file : arguments.files) {
+    const Table table = readTable(file, inference.listColumns(), MissingCells::kKeep);
+    for (const std::optional<double>& start : starts) {
+      WaitingLine waiting("inferring " + file + " in segments");
+      const InferredMeasurement inferred = inference.infer(table, start);
+      waiting.clear();
+      print(inferred, inference, arguments, is_first);
+      is_first = false;
+    }
+  }
+}
+
+}  // namespace twinmap::cli

@@ -1,0 +1,175 @@
+// A driven oscillator x'' = F - k x - d x' in segments, each from a state of its own.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <random>
+
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/segments/segment_inference.hpp"
+#include "framework/inference/select_estimate.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kStep = 0.02, kNoise = 1e-3;
+constexpr int kSamples = 25, kSegments = 12;  // of 0.5 s
+
+const std::string kOscillator = R"(
+name: oscillator
+parameters:
+  k: {bounds: [50, 150], unit: N/m}
+  d: {bounds: [0.2, 3], unit: N s/m}
+nuisance:
+  x0: {bounds: [-0.1, 0.1], unit: m}
+system:
+  bodies: {cart: {mass: 1, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: d}]
+  applied_forces: [{body: cart, force: [F, 0, 0]}]
+excitation: {F: {unit: N, tables: [{measured: {file: none.csv, column: F, time: t}, interpolation: hold}]}}
+initial: {coordinates: {x: x0}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: 0.5}
+features: [{samples: {outputs: [x], start: 0, interval: 0.02, count: 25}}]
+noise: {stddev: {x: 1e-3}}
+)";
+
+ExperimentSpec read(const std::string& text) {
+  return readExperiment(parseExperimentTree(text, "oscillator.yaml"));
+}
+
+double force(int i) {
+  return 3.0 * std::sin(1.3 * i) + (i % 40 < 20 ? 4.0 : -4.0);
+}
+
+/// The exact step of a held force.
+Eigen::Vector2d step(const Eigen::Vector2d& state, double k, double d, double held) {
+  const double decay = 0.5 * d, w = std::sqrt(k - decay * decay), rest = held / k;
+  const double e = std::exp(-decay * kStep), c = std::cos(w * kStep), s = std::sin(w * kStep);
+  const double x = state[0] - rest, v = state[1];
+  return {rest + e * (x * c + (v + decay * x) / w * s), e * (v * c - (decay * v + k * x) / w * s)};
+}
+
+/// x of `count` samples from a state on, the first force being that of sample `first`.
+VectorXd run(Eigen::Vector2d state, double k, double d, int first, int count) {
+  VectorXd x(count);
+  for (int i = 0; i < count; ++i) {
+    x[i] = state[0];
+    state = step(state, k, d, force(first + i));
+  }
+  return x;
+}
+
+Table record(int seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, kNoise);
+  const int count = kSamples * kSegments;
+  VectorXd times(count), forces(count), x = run({0.05, 0.2}, 100.0, 1.0, 0, count);
+  for (int i = 0; i < count; ++i) {
+    times[i] = i * kStep;
+    forces[i] = force(i);
+    x[i] += noise(random);
+  }
+  return {"record.csv", {{"t", {}, times}, {"F", {}, forces}, {"x", {}, x}}, {}};
+}
+
+/// Of k and d with free initial states, by differences of the exact motion.
+MatrixXd calcLimitCovariance() {
+  MatrixXd information = MatrixXd::Zero(2, 2);
+  Eigen::Vector2d state(0.05, 0.2);
+  for (int segment = 0; segment < kSegments; ++segment) {
+    const int first = segment * kSamples;
+    const auto at = [&](double x, double v, double k, double d) {
+      return run(state + Eigen::Vector2d(x, v), 100.0 + k, 1.0 + d, first, kSamples);
+    };
+    constexpr double h = 1e-4;
+    MatrixXd j(kSamples, 4);
+    j << at(h, 0, 0, 0) - at(-h, 0, 0, 0), at(0, h, 0, 0) - at(0, -h, 0, 0), at(0, 0, h, 0) - at(0, 0, -h, 0),
+        at(0, 0, 0, h) - at(0, 0, 0, -h);
+    const MatrixXd all = (j.transpose() * j).inverse() * std::pow(2.0 * h * kNoise, 2);
+    information += all.bottomRightCorner(2, 2).inverse();
+    for (int i = 0; i < kSamples; ++i) {
+      state = step(state, 100.0, 1.0, force(first + i));
+    }
+  }
+  return information.inverse();
+}
+
+InferredMeasurement infer(const Table& table, const std::string& text = kOscillator, double length = 0.5) {
+  return SegmentInference(read(text), length, VectorXd(0), 256).infer(table, {});
+}
+
+TEST(Segments, ReachTheLimitWithFreeInitialStates) {
+  const InferredMeasurement inferred = infer(record(3));
+  const Estimate estimate = selectEstimate(inferred);
+  EXPECT_EQ(estimate.statuses, std::vector<std::string>{"ok"});
+  const VectorXd limit = calcLimitCovariance().diagonal().cwiseSqrt();
+  const Eigen::Vector2d truth(100.0, 1.0);
+  for (Index j = 0; j < 2; ++j) {
+    EXPECT_NEAR(estimate.stddev[j] / limit[j], 1.0, 0.1) << j;
+    EXPECT_LT(std::abs(estimate.mean[j] - truth[j]), 3.5 * limit[j]) << j;
+  }
+  EXPECT_EQ(inferred.segments->count, kSegments);
+  EXPECT_EQ(inferred.segments->states, 2);
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  EXPECT_NEAR(fit.degrees, kSamples * kSegments - 2 * kSegments - 2, 0.5);
+  EXPECT_EQ(fit.residual.size(), kSamples * kSegments);
+}
+
+TEST(Segments, DoWithoutSamplesThatAreMissing) {
+  Table table = record(4);
+  for (const Index i : {Index{25}, Index{26}, Index{40}, Index{130}}) {
+    table.columns[2].values[i] = std::nan("");
+  }
+  const InferredMeasurement inferred = infer(table);
+  EXPECT_EQ(selectEstimate(inferred).statuses, std::vector<std::string>{"ok"});
+  EXPECT_NEAR(inferred.posterior->fit->degrees, kSamples * kSegments - 4 - 2 * kSegments - 2, 0.5);
+}
+
+TEST(Segments, NoticeWhatTheModelLacks) {
+  Table table = record(5);
+  table.columns[1].values *= 1.1;  // the force as it was not
+  EXPECT_EQ(selectEstimate(infer(table)).statuses.front(), "model_mismatch");
+}
+
+std::string getError(const std::string& text, double length) {
+  try {
+    SegmentInference(read(text), length, VectorXd(0), 256);
+  } catch (const ExperimentError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string replace(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Segments, SayWhatTheyCannotDo) {
+  EXPECT_NE(
+      getError(kOscillator, 0.04).find("has 2 samples of 1 outputs, which do not determine its 2 initial"),
+      std::string::npos);
+  const std::string sticking = replace(
+      kOscillator, "  dampers", "  friction: [{coordinate: x, model: coulomb, coulomb: 0.1}]\n  dampers");
+  EXPECT_NE(getError(sticking, 0.5).find("friction that sticks"), std::string::npos);
+  const std::string late =
+      replace(kOscillator, "{x: {coordinate: x}}", "{x: {coordinate: x, sensor: {lag: 0.01}}}");
+  EXPECT_NE(getError(late, 0.5).find("sensor of output 'x'"), std::string::npos);
+  const std::string peaks = replace(kOscillator, "features: [",
+                                    "features: [{statistics: {outputs: [x], window: {start: 0, interval: "
+                                    "0.1, count: 5}, quantities: [mean]}}, ");
+  EXPECT_NE(getError(peaks, 0.5).find("leave only 'samples'"), std::string::npos);
+  EXPECT_EQ(getError(kOscillator, 0.5), "");
+}
+
+TEST(Segments, NeedARecordingOfOneSegmentAtLeast) {
+  EXPECT_THROW(infer(record(6), kOscillator, 20.0), ExperimentError);
+}
+
+}  // namespace
+}  // namespace twinmap
