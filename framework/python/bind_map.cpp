@@ -1,6 +1,5 @@
 #include <pybind11/stl.h>
 
-#include "framework/data/measurement/make_table.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/measurement/known_value.hpp"
@@ -8,6 +7,7 @@
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"
+#include "framework/python/measured_columns.hpp"
 #include "framework/python/python_experiment.hpp"
 #include "framework/python/python_map.hpp"
 #include "framework/python/quantity.hpp"
@@ -16,16 +16,6 @@ namespace twinmap::python {
 namespace {
 
 using Known = std::vector<std::pair<std::string, double>>;
-using Vector = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using NamedVectors = std::vector<std::pair<std::string, Vector>>;
-
-Eigen::Map<const Eigen::VectorXd> viewVector(const Vector& values, const std::string& what) {
-  if (values.ndim() != 1) {
-    throw MeasurementError(what + ": must be an array of one dimension");
-  }
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
-}
-
 /// How measurements are to be taken.
 struct InferRequest {
   Known known;
@@ -75,10 +65,7 @@ InferredEstimate inferFile(PythonMap& map, const std::string& path, const InferR
 }
 
 InferredEstimate inferColumns(PythonMap& map, const NamedVectors& columns, const InferRequest& request) {
-  std::vector<NamedColumn> named;
-  for (const auto& [name, values] : columns) {
-    named.push_back({name, viewVector(values, "column '" + name + "'")});
-  }
+  const std::vector<NamedColumn> named = viewNamed(columns);
   return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
     const Table table =
         makeTable("measurement", named, map.getReader().listColumns(), session.getMissingCells());

@@ -10,5 +10,7 @@ void bindQuantity(pybind11::module_& module);
 void bindExperiment(pybind11::module_& module);
 void bindRuns(pybind11::module_& module);
 void bindMap(pybind11::module_& module);
+void bindJoint(pybind11::module_& module);
+void bindDiagnosis(pybind11::module_& module);
 
 }  // namespace twinmap::python

@@ -21,4 +21,6 @@ PYBIND11_MODULE(_twinmap, module) {
   twinmap::python::bindExperiment(module);
   twinmap::python::bindRuns(module);
   twinmap::python::bindMap(module);
+  twinmap::python::bindJoint(module);
+  twinmap::python::bindDiagnosis(module);
 }

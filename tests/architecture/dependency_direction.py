@@ -65,7 +65,7 @@ ALLOWED = {
         "optimal_design",
         "export",
     },
-    "python": {"base", "experiment", "simulation", "models", "models/fmu", "data", "study", "inference"},
+    "python": {"base", "experiment", "simulation", "models", "models/fmu", "data", "study", "inference", "diagnosis"},
 }
 
 # The folders of a room, those that others of it build on first; a room that is not here has no order within.

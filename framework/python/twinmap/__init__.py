@@ -17,14 +17,17 @@ from . import _twinmap
 from ._errors import ExperimentError, MeasurementError
 from ._experiment import Experiment, Responses, sweep
 from ._map import Estimate, Map, Posterior
+from ._recordings import Diagnosis, JointEstimate, infer_together
 from ._results import Results
 from ._twinmap import Progress, Quantity
 
 __version__ = _twinmap.__version__
 __all__ = [
+    "Diagnosis",
     "Experiment",
     "ExperimentError",
     "Estimate",
+    "JointEstimate",
     "Map",
     "MeasurementError",
     "Posterior",
@@ -32,6 +35,7 @@ __all__ = [
     "Quantity",
     "Responses",
     "Results",
+    "infer_together",
     "sweep",
 ]
 

@@ -1,4 +1,5 @@
 """Experiments: read, changed, simulated, run."""
+import json
 import os
 import shlex
 from typing import Any, List, Mapping, Optional, Sequence, Tuple, Union
@@ -11,6 +12,7 @@ from ._arguments import PathLike, Points, choose_threads, list_known, list_overr
 from ._errors import ExperimentError
 from ._map import Estimate, Measurement, infer
 from ._progress import ProgressChoice, ProgressReport
+from ._recordings import Diagnosis, Recording, diagnose
 from ._results import Results
 from ._twinmap import Quantity
 
@@ -186,9 +188,39 @@ class Experiment:
         measurement, known, start: as Map.infer() takes them. Cost: some thousand simulations. Raises MeasurementError
         for a measurement that cannot be used, ExperimentError where a feature has no noise.
         """
+        return infer(
+            self._get_inferring(), measurement, _twinmap.InferRequest(list_known(known), start, None, draws, "")
+        )
+
+    def diagnose(
+        self,
+        recordings: Union[Recording, Sequence[Recording]],
+        *,
+        starts: Sequence[float] = (),
+        known: Optional[Mapping[str, float]] = None,
+        accept: Sequence[str] = (),
+    ) -> Diagnosis:
+        """Says what the model lacks to explain recordings (docs/how-to/find-what-a-model-lacks.md).
+
+        recordings: one or several, as infer() takes them. starts: times in each (s) that are the model's 0. accept: terms
+        to take whatever the tests say. Cost: two posteriors, and one for each term that is tied. Raises MeasurementError
+        and ExperimentError as infer() does.
+        """
+        return diagnose(self._get_inferring(), recordings, starts, known, accept)
+
+    def find_blind_spots(self, *, known: Optional[Mapping[str, float]] = None) -> pd.DataFrame:
+        """Before any measurement: of each term that the model may lack its unit, the size that is noticed in 95 % of
+        measurements (`noticed_from`), and by how many standard deviations it has moved each parameter by then."""
+        spots = json.loads(_twinmap.find_blind_spots(self._get_inferring(), list_known(known))[0])["blind_spots"]
+        rows = [
+            {"unit": spot["unit"], "noticed_from": spot["noticed_from"], **spot.get("shifts", {})} for spot in spots
+        ]
+        return pd.DataFrame(rows, index=pd.Index([spot["term"] for spot in spots], name="term"))
+
+    def _get_inferring(self) -> _twinmap.Map:
         if self._inferring is None:
             self._inferring = _twinmap.Map.of_experiment(self._experiment)
-        return infer(self._inferring, measurement, _twinmap.InferRequest(list_known(known), start, None, draws, ""))
+        return self._inferring
 
     def run(
         self,

@@ -156,5 +156,23 @@ class Map:
     def residual_correlation(self) -> np.ndarray: ...
     def write_experiment(self) -> str: ...
 
+_Columns = Optional[Sequence[Tuple[str, np.ndarray]]]
+
+def infer_together(
+    path: str,
+    recordings: Sequence[Tuple[str, str, _Columns]],
+    starts: Sequence[float],
+    windows: Optional[float],
+    known: Sequence[Tuple[str, float]],
+    draws: int,
+) -> Tuple[str, str, np.ndarray, np.ndarray]: ...
+def diagnose(
+    map: Map,
+    recordings: Sequence[Tuple[str, _Columns]],
+    starts: Sequence[float],
+    known: Sequence[Tuple[str, float]],
+    accepted: Sequence[str],
+) -> Tuple[str, str, str]: ...
+def find_blind_spots(map: Map, known: Sequence[Tuple[str, float]]) -> Tuple[str, str]: ...
 def set_worker_program(executable: str, arguments: Sequence[str]) -> None: ...
 def run_worker() -> NoReturn: ...

@@ -1,17 +1,14 @@
 #include <fmt/core.h>
 
-#include <deque>
 #include <iostream>
-#include <set>
 
-#include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/experiment_of_run.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/direct_inference.hpp"
-#include "framework/inference/joint_inference.hpp"
 #include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/recording_list.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
@@ -41,52 +38,14 @@ std::vector<RecordedFile> listFiles(const InferArguments& arguments, const Joint
   return files;
 }
 
-/// Recordings with their tables, and labels that tell them apart.
-class RecordingList {
- public:
-  RecordingList(const InferArguments& arguments, const JointInferrer& inferrer) {
-    for (const RecordedFile& one : listFiles(arguments, inferrer)) {
-      const MeasurementReader& reader = inferrer.getReader(one.trial);
-      tables_.push_back(readTable(one.file, reader.listColumns(), MissingCells::kKeep));
-      for (const std::optional<double>& start : listStarts(arguments, reader, tables_.back())) {
-        add(one, start, arguments);
-      }
-    }
+std::vector<RecordedTable> readTables(const InferArguments& arguments, const JointInferrer& inferrer) {
+  std::vector<RecordedTable> tables;
+  for (const RecordedFile& one : listFiles(arguments, inferrer)) {
+    const std::vector<std::string> columns = inferrer.getReader(one.trial).listColumns();
+    tables.push_back({one.trial, one.file, readTable(one.file, columns, MissingCells::kKeep)});
   }
-
-  const std::vector<Recording>& get() const { return recordings_; }
-
- private:
-  static std::vector<std::optional<double>> listStarts(const InferArguments& arguments,
-                                                       const MeasurementReader& reader, const Table& table) {
-    if (arguments.windows) {
-      const std::optional<double> first =
-          arguments.starts.empty() ? std::nullopt : std::optional<double>(arguments.starts.front());
-      const std::vector<double> starts = reader.listWindows(table, first, *arguments.windows);
-      return {starts.begin(), starts.end()};
-    }
-    if (arguments.starts.empty()) {
-      return {std::nullopt};
-    }
-    return {arguments.starts.begin(), arguments.starts.end()};
-  }
-
-  void add(const RecordedFile& file, std::optional<double> start, const InferArguments& arguments) {
-    std::string label = file.trial.empty() ? file.file : file.trial;
-    if (start && (arguments.windows || arguments.starts.size() > 1)) {
-      label += "@" + toShortText(*start, 6) + "s";
-    }
-    std::string unique = label;
-    for (int repeat = 2; !labels_.insert(unique).second; ++repeat) {
-      unique = fmt::format("{}[{}]", label, repeat);
-    }
-    recordings_.push_back({unique, file.trial, &tables_.back(), start});
-  }
-
-  std::deque<Table> tables_;  // whose addresses stay
-  std::vector<Recording> recordings_;
-  std::set<std::string> labels_;
-};
+  return tables;
+}
 
 void requireJointArguments(const InferArguments& arguments) {
   if (arguments.follow) {
@@ -132,7 +91,8 @@ void inferJointly(const InferArguments& arguments) {
   const int draws =
       arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
   const JointInferrer inferrer(loadExperimentTree(findExperimentFile(arguments.run)), arguments.known, draws);
-  const RecordingList recordings(arguments, inferrer);
+  const RecordingList recordings(inferrer, readTables(arguments, inferrer),
+                                 {arguments.starts, arguments.windows});
   if (recordings.get().size() == 1 && !arguments.trials.empty()) {
     const Recording& only = recordings.get().front();
     inferTrial(arguments, inferrer.getReader(only.trial), only, draws);

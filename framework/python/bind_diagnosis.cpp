@@ -1,0 +1,89 @@
+#include <pybind11/stl.h>
+
+#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/python/bindings.hpp"
+#include "framework/python/measured_columns.hpp"
+#include "framework/python/python_map.hpp"
+
+namespace twinmap::python {
+namespace {
+
+/// Name and columns; without these the name is that of a file.
+using Recorded = std::pair<std::string, std::optional<NamedVectors>>;
+using Known = std::vector<std::pair<std::string, double>>;
+
+Eigen::VectorXd collect(const MeasurementReader& reader, const Known& known) {
+  std::vector<KnownValue> values;
+  for (const auto& [name, value] : known) {
+    values.push_back({name, value});
+  }
+  return collectKnown(reader.getExperiment().model.inputs, values);
+}
+
+RecordedFeatures readTables(const MeasurementReader& reader, const std::vector<Recorded>& recordings,
+                            const std::vector<double>& starts, const Eigen::VectorXd& known) {
+  std::vector<std::optional<double>> from(starts.begin(), starts.end());
+  if (from.empty()) {
+    from.emplace_back();
+  }
+  RecordedFeatures all;
+  for (const auto& [name, columns] : recordings) {
+    const std::vector<std::string> needed = reader.listColumns();
+    const Table table = columns ? makeTable(name, viewNamed(*columns), needed, MissingCells::kKeep)
+                                : readTable(name, needed, MissingCells::kKeep);
+    for (const std::optional<double>& start : from) {
+      RecordedFeatures one = readRecording(reader, table, start, known);
+      one.features.insert(one.features.begin(), all.features.begin(), all.features.end());
+      all = std::move(one);
+    }
+  }
+  return all;
+}
+
+/// JSON and text, as `twinmap diagnose` prints them, and the corrected experiment.
+py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& recordings,
+                             const std::vector<double>& starts, const Known& known,
+                             const std::vector<std::string>& accepted) {
+  const MeasurementReader& reader = map.getReader();
+  const RecordedFeatures read = readTables(reader, recordings, starts, collect(reader, known));
+  DiagnosisOptions options;
+  options.accepted = accepted;
+  options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
+  Diagnosis diagnosis;
+  {
+    const py::gil_scoped_release release;
+    diagnosis = diagnose(reader.getExperiment(), read, options);
+  }
+  std::string names;
+  for (const Recorded& one : recordings) {
+    names += (names.empty() ? "" : ", ") + one.first;
+  }
+  return py::make_tuple(makeDiagnosisJson(diagnosis, names), makeDiagnosisTable(diagnosis, names),
+                        writeExperiment(diagnosis.corrected));
+}
+
+/// JSON and text, as `twinmap diagnose` without recordings prints them.
+py::tuple findBlindSpots(const PythonMap& map, const Known& known) {
+  const MeasurementReader& reader = map.getReader();
+  RecordedFeatures recordings = readRecordings(reader, {}, {}, {});
+  recordings.known = collect(reader, known);
+  recordings.features = {Eigen::VectorXd::Zero(reader.getExtractor().getFeatureCount())};
+  std::vector<BlindSpot> spots;
+  {
+    const py::gil_scoped_release release;
+    spots = calcBlindSpots(reader.getExperiment(), recordings, DiagnosisOptions{}.level);
+  }
+  const std::vector<ParameterSpec>& parameters = reader.getExperiment().model.parameters;
+  return py::make_tuple(makeBlindSpotJson(spots, parameters), makeBlindSpotTable(spots, parameters));
+}
+
+}  // namespace
+
+void bindDiagnosis(py::module_& module) {
+  module.def("diagnose", &diagnoseRecordings, py::arg("map"), py::arg("recordings"), py::arg("starts"),
+             py::arg("known"), py::arg("accepted"));
+  module.def("find_blind_spots", &findBlindSpots, py::arg("map"), py::arg("known"));
+}
+
+}  // namespace twinmap::python

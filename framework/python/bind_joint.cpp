@@ -1,0 +1,72 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/inference/recording_list.hpp"
+#include "framework/python/arrays.hpp"
+#include "framework/python/bindings.hpp"
+#include "framework/python/measured_columns.hpp"
+
+namespace twinmap::python {
+namespace {
+
+/// Trial ("" without trials), name, and columns; without these the name is that of a file.
+using Recorded = std::tuple<std::string, std::string, std::optional<NamedVectors>>;
+
+std::vector<RecordedTable> readTables(const std::vector<Recorded>& recordings,
+                                      const JointInferrer& inferrer) {
+  std::vector<RecordedTable> tables;
+  for (const auto& [trial, name, columns] : recordings) {
+    const std::vector<std::string> needed = inferrer.getReader(trial).listColumns();
+    tables.push_back({trial, name,
+                      columns ? makeTable(name, viewNamed(*columns), needed, MissingCells::kKeep)
+                              : readTable(name, needed, MissingCells::kKeep)});
+  }
+  return tables;
+}
+
+/// Of the machine's parameters alone; none where there are none.
+Eigen::MatrixXd takeDraws(const SimulatorPosterior& joint, std::size_t parameters) {
+  const auto p = static_cast<Eigen::Index>(parameters);
+  return joint.draws.rows() >= p ? Eigen::MatrixXd(joint.draws.topRows(p)) : Eigen::MatrixXd(p, 0);
+}
+
+/// JSON and text, as `twinmap infer --joint` prints them, and the joint draws (n, p) with their weights.
+py::tuple inferTogether(const std::string& path, const std::vector<Recorded>& recordings,
+                        const RecordedWindows& windows,
+                        const std::vector<std::pair<std::string, double>>& known, int draws) {
+  std::vector<std::string> texts;
+  for (const auto& [name, value] : known) {
+    texts.push_back(fmt::format("{}={:.17g}", name, value));
+  }
+  const JointInferrer inferrer(loadExperimentTree(path), texts, draws);
+  const RecordingList list(inferrer, readTables(recordings, inferrer), windows);
+  if (list.get().size() < 2) {
+    throw ExperimentError(path +
+                          ": one recording alone is not inferred jointly; Experiment.infer() takes it");
+  }
+  JointInference inferred;
+  {
+    const py::gil_scoped_release release;
+    inferred = inferrer.infer(list.get());
+  }
+  return py::make_tuple(makeJointJson(inferred, inferrer.getParameters()),
+                        makeJointTable(inferred, inferrer.getParameters()),
+                        moveToRows(takeDraws(inferred.joint, inferrer.getParameters().size())),
+                        copyVector(inferred.joint.weights));
+}
+
+}  // namespace
+
+void bindJoint(py::module_& module) {
+  module.def(
+      "infer_together",
+      [](const std::string& path, const std::vector<Recorded>& recordings, const std::vector<double>& starts,
+         std::optional<double> windows, const std::vector<std::pair<std::string, double>>& known, int draws) {
+        return inferTogether(path, recordings, {starts, windows}, known, draws);
+      },
+      py::arg("path"), py::arg("recordings"), py::arg("starts"), py::arg("windows"), py::arg("known"),
+      py::arg("draws"));
+}
+
+}  // namespace twinmap::python
