@@ -27,9 +27,9 @@ struct ResidualTest {
 constexpr double kMismatchLevel = 0.01;
 
 /// residual: whitened, one for each of `infos` (none: not plausible); degrees: of freedom of its sum of
-/// squares. Whiteness is tested within each output whose samples have times, over up to ten lags, where there
-/// are at least 20 samples and the residual is not below a hundredth of the noise; the parameters that were
-/// fitted make neighbours a little less alike, so that the test is on the safe side.
+/// squares. Whiteness is tested within each output whose samples have times, over one, three and ten lags
+/// (Bonferroni), where there are at least 20 samples and the residual is not below a hundredth of the noise;
+/// the parameters that were fitted make neighbours a little less alike, so that the test is on the safe side.
 ResidualTest testResidual(const Eigen::VectorXd& residual, double degrees,
                           const std::vector<FeatureInfo>& infos);
 
