@@ -49,7 +49,7 @@ class JointEstimate:
     `statuses`: ["ok"], or what is to be said against the estimate, the most severe first. `agrees`, `p_value`: of the
     test whether the recordings agree; None where it was not made. `contradictions`: a row for each parameter in which
     two of them differ. `alone`: the status of each recording by itself. `draws`: joint draws, a column for each
-    parameter; `weights` (n): theirs. `details`: all of it, as `twinmap infer --joint --json` prints it.
+    parameter; `weights` (n): theirs. `details`: all of it, as the JSON of `twinmap infer --joint` has it.
     """
 
     def __init__(self, text: str, table: str, draws: np.ndarray, weights: np.ndarray) -> None:
