@@ -79,14 +79,19 @@ class Experiment:
         self._inferring: Optional[_twinmap.Map] = None  # made when first needed
 
     @staticmethod
-    def from_file(path: PathLike) -> "Experiment":
-        """Reads and checks a YAML file. Raises ExperimentError for the first thing wrong."""
-        return Experiment._make((os.fspath(path), None), [])
+    def from_file(path: PathLike, *, trial: Optional[str] = None) -> "Experiment":
+        """Reads and checks a YAML file; of one with trials the one that is named. Raises ExperimentError for the first
+        thing wrong."""
+        return Experiment._make((os.fspath(path), None), Experiment._choose(trial))
 
     @staticmethod
-    def from_yaml(text: str, source: str = "experiment.yaml") -> "Experiment":
+    def from_yaml(text: str, source: str = "experiment.yaml", *, trial: Optional[str] = None) -> "Experiment":
         """The same from a text; `source` stands for the file, to which names of other files in it are relative."""
-        return Experiment._make((source, text), [])
+        return Experiment._make((source, text), Experiment._choose(trial))
+
+    @staticmethod
+    def _choose(trial: Optional[str]) -> List[str]:
+        return [] if trial is None else [f"trial={trial}"]
 
     @staticmethod
     def _make(source: Tuple[str, Optional[str]], overrides: List[str]) -> "Experiment":

@@ -44,7 +44,7 @@ class Recordings(FolderTestCase):
         self.path.write_text(describe("F", TRIALS))
 
     def measure(self, trial, k=95.0):
-        experiment = twinmap.Experiment.from_file(self.path).override(trial=trial)
+        experiment = twinmap.Experiment.from_file(self.path, trial=trial)
         return experiment.simulate({"k": k, "d": 1.2}, noise=True, seed=int(k)).to_frame()
 
     def measure_text(self, text, seed):
@@ -65,11 +65,11 @@ class Recordings(FolderTestCase):
         weighted = (together.draws["k"] * together.weights).sum()
         self.assertAlmostEqual(weighted, mean, delta=1e-6 * abs(mean))
         arguments = ["--trial", f"free={self.folder / 'free.csv'}", "--trial", f"step={self.folder / 'step.csv'}"]
-        printed = json.loads(call("infer", self.path, *arguments, "--json"))
+        printed = json.loads(call("infer", self.path, *arguments, "--json").stdout)
         self.assertAlmostEqual(printed["parameters"]["k"]["mean"], mean, delta=1e-9 * abs(mean))
 
     def test_recordings_that_disagree_say_so(self):
-        self.path.write_text(describe("0 N", FREE))
+        self.path.write_text(describe("0 * x", FREE))
         other = twinmap.Experiment.from_file(self.path).simulate({"k": 105, "d": 1.2}, noise=True).to_frame()
         same = twinmap.Experiment.from_file(self.path).simulate({"k": 95, "d": 1.2}, noise=True).to_frame()
         together = twinmap.infer_together(self.path, [same, other])
@@ -84,8 +84,8 @@ class Recordings(FolderTestCase):
             twinmap.infer_together(self.path, {"swing": self.measure("free")})
 
     def test_a_missing_term_is_named_and_accepted(self):
-        poor = twinmap.Experiment.from_yaml(describe("0 N", FREE))
-        true = describe("-2000 N/m^3 * x^3", FREE)
+        poor = twinmap.Experiment.from_yaml(describe("0 * x", FREE))
+        true = describe("-20000 * x^3", FREE)
         recordings = [self.measure_text(true, seed) for seed in (1, 2)]
         diagnosis = poor.diagnose(recordings)
         self.assertIn("cubic", diagnosis.terms[0])
@@ -97,7 +97,7 @@ class Recordings(FolderTestCase):
         self.assertEqual(list(diagnosis.before().index), ["k", "d"])
 
     def test_blind_spots_come_before_any_measurement(self):
-        spots = twinmap.Experiment.from_yaml(describe("0 N", FREE)).find_blind_spots()
+        spots = twinmap.Experiment.from_yaml(describe("0 * x", FREE)).find_blind_spots()
         self.assertGreater(len(spots), 5)
         self.assertLessEqual({"unit", "noticed_from", "k", "d"}, set(spots.columns))
         self.assertTrue(pd.to_numeric(spots["noticed_from"]).dropna().gt(0).all())
