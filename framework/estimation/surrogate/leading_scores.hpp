@@ -15,8 +15,8 @@ Eigen::ArrayXd calcRoughWeights(const ForwardSurrogate& surrogate);
 std::vector<Eigen::Index> rankSimulations(const ForwardSurrogate& surrogate,
                                           const Eigen::Ref<const Eigen::VectorXd>& scores);
 
-/// The scores that say most, some five for each unknown: a search with them comes near enough to a minimum, at
-/// a fraction of the cost.
+/// The scores that say most, some five for each unknown: a search with them comes near enough to a minimum,
+/// at a fraction of the cost.
 struct LeadingScores {
   Eigen::ArrayXd weights;            ///< r, 1 / stddev of noise and mean error; 0 of scores left out
   std::vector<Eigen::Index> counts;  ///< of each window, the first scores that take part

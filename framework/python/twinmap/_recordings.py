@@ -14,7 +14,7 @@ _Columns = Optional[List[Tuple[str, np.ndarray]]]
 
 
 def _read(recording: Recording, number: int) -> Tuple[str, _Columns]:
-    """What it is called, and its columns where it is no file."""
+    """What it is called, and its columns unless it is a file."""
     if isinstance(recording, (str, os.PathLike)):
         return os.fspath(recording), None
     return f"recording {number}", list_columns(recording)
