@@ -36,7 +36,7 @@ enum class RandomPurpose : std::uint64_t {
   kAgreement = 30,       // errors that the disagreement of measurements is compared with
   kPriorPoints = 31,     // test points in place of those that bounds cut off
   kCourse = 32,          // errors that a change over measurements is compared with
-  kPosteriorWalk = 33,  // chains through valleys that importance sampling does not cover
+  kPosteriorWalk = 33,   // chains through valleys that importance sampling does not cover
   kPriorTraining = 40,   // training points in place of those that bounds cut off
   kPriorPool = 41,       // and points of a surrogate's pool
 };
