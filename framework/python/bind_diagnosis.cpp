@@ -11,15 +11,6 @@ namespace {
 
 /// Name and columns; without these the name is that of a file.
 using Recorded = std::pair<std::string, std::optional<NamedVectors>>;
-using Known = std::vector<std::pair<std::string, double>>;
-
-Eigen::VectorXd collect(const MeasurementReader& reader, const Known& known) {
-  std::vector<KnownValue> values;
-  for (const auto& [name, value] : known) {
-    values.push_back({name, value});
-  }
-  return collectKnown(reader.getExperiment().model.inputs, values);
-}
 
 RecordedFeatures readTables(const MeasurementReader& reader, const std::vector<Recorded>& recordings,
                             const std::vector<double>& starts, const Eigen::VectorXd& known) {
@@ -29,9 +20,7 @@ RecordedFeatures readTables(const MeasurementReader& reader, const std::vector<R
   }
   RecordedFeatures all;
   for (const auto& [name, columns] : recordings) {
-    const std::vector<std::string> needed = reader.listColumns();
-    const Table table = columns ? makeTable(name, viewNamed(*columns), needed, MissingCells::kKeep)
-                                : readTable(name, needed, MissingCells::kKeep);
+    const Table table = readOrMakeTable(name, columns, reader.listColumns());
     for (const std::optional<double>& start : from) {
       RecordedFeatures one = readRecording(reader, table, start, known);
       one.features.insert(one.features.begin(), all.features.begin(), all.features.end());
@@ -46,7 +35,8 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
                              const std::vector<double>& starts, const Known& known,
                              const std::vector<std::string>& accepted) {
   const MeasurementReader& reader = map.getReader();
-  const RecordedFeatures read = readTables(reader, recordings, starts, collect(reader, known));
+  const RecordedFeatures read =
+      readTables(reader, recordings, starts, collectKnown(reader.getExperiment().model.inputs, known));
   DiagnosisOptions options;
   options.accepted = accepted;
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
@@ -67,7 +57,7 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
 py::tuple findBlindSpots(const PythonMap& map, const Known& known) {
   const MeasurementReader& reader = map.getReader();
   RecordedFeatures recordings = readRecordings(reader, {}, {}, {});
-  recordings.known = collect(reader, known);
+  recordings.known = collectKnown(reader.getExperiment().model.inputs, known);
   recordings.features = {Eigen::VectorXd::Zero(reader.getExtractor().getFeatureCount())};
   std::vector<BlindSpot> spots;
   {

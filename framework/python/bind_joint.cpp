@@ -17,10 +17,7 @@ std::vector<RecordedTable> readTables(const std::vector<Recorded>& recordings,
                                       const JointInferrer& inferrer) {
   std::vector<RecordedTable> tables;
   for (const auto& [trial, name, columns] : recordings) {
-    const std::vector<std::string> needed = inferrer.getReader(trial).listColumns();
-    tables.push_back({trial, name,
-                      columns ? makeTable(name, viewNamed(*columns), needed, MissingCells::kKeep)
-                              : readTable(name, needed, MissingCells::kKeep)});
+    tables.push_back({trial, name, readOrMakeTable(name, columns, inferrer.getReader(trial).listColumns())});
   }
   return tables;
 }
@@ -33,8 +30,7 @@ Eigen::MatrixXd takeDraws(const SimulatorPosterior& joint, std::size_t parameter
 
 /// JSON and text, as `twinmap infer --joint` prints them, and the joint draws (n, p) with their weights.
 py::tuple inferTogether(const std::string& path, const std::vector<Recorded>& recordings,
-                        const RecordedWindows& windows,
-                        const std::vector<std::pair<std::string, double>>& known, int draws) {
+                        const RecordedWindows& windows, const Known& known, int draws) {
   std::vector<std::string> texts;
   for (const auto& [name, value] : known) {
     texts.push_back(fmt::format("{}={:.17g}", name, value));
@@ -62,7 +58,7 @@ void bindJoint(py::module_& module) {
   module.def(
       "infer_together",
       [](const std::string& path, const std::vector<Recorded>& recordings, const std::vector<double>& starts,
-         std::optional<double> windows, const std::vector<std::pair<std::string, double>>& known, int draws) {
+         std::optional<double> windows, const Known& known, int draws) {
         return inferTogether(path, recordings, {starts, windows}, known, draws);
       },
       py::arg("path"), py::arg("recordings"), py::arg("starts"), py::arg("windows"), py::arg("known"),

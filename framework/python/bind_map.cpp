@@ -15,7 +15,6 @@
 namespace twinmap::python {
 namespace {
 
-using Known = std::vector<std::pair<std::string, double>>;
 /// How measurements are to be taken.
 struct InferRequest {
   Known known;
@@ -45,11 +44,7 @@ struct InferredEstimate {
 template <class Infer>
 InferredEstimate inferBy(PythonMap& map, const InferRequest& request, const Infer& infer) {
   const py::gil_scoped_release release;
-  std::vector<KnownValue> values;
-  for (const auto& [name, value] : request.known) {
-    values.push_back({name, value});
-  }
-  const Eigen::VectorXd known = collectKnown(map.getReader().getExperiment().model.inputs, values);
+  const Eigen::VectorXd known = collectKnown(map.getReader().getExperiment().model.inputs, request.known);
   PythonMap::Session session = map.borrow(request.options);
   InferredMeasurement measurement = infer(*session, known);
   map.giveBack(request.options, std::move(session));

@@ -3,11 +3,13 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "framework/data/measurement/make_table.hpp"
+#include "framework/inference/measurement/known_value.hpp"
 
 namespace twinmap::python {
 
@@ -30,6 +32,24 @@ inline std::vector<NamedColumn> viewNamed(const NamedVectors& columns) {
     named.push_back({name, viewVector(values, "column '" + name + "'")});
   }
   return named;
+}
+
+/// What was measured: the columns; without these, the file that the name is of. Missing cells are kept.
+inline Table readOrMakeTable(const std::string& name, const std::optional<NamedVectors>& columns,
+                             const std::vector<std::string>& needed) {
+  return columns ? makeTable(name, viewNamed(*columns), needed, MissingCells::kKeep)
+                 : readTable(name, needed, MissingCells::kKeep);
+}
+
+using Known = std::vector<std::pair<std::string, double>>;
+
+/// Values of the known inputs, in their order.
+inline Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs, const Known& known) {
+  std::vector<KnownValue> values;
+  for (const auto& [name, value] : known) {
+    values.push_back({name, value});
+  }
+  return twinmap::collectKnown(inputs, values);
 }
 
 }  // namespace twinmap::python
