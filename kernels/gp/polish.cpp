@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/optimization/box_quadratic.hpp"
 
 namespace twinmap::gp {
 
@@ -44,29 +45,6 @@ MatrixXd makePositive(const MatrixXd& matrix) {
   return eigen.vectors * eigen.values.cwiseAbs().cwiseMax(kLeast).asDiagonal() * eigen.vectors.transpose();
 }
 
-/// Those that no bound holds.
-std::vector<Index> findFree(const Place& at, const SearchBox& box) {
-  std::vector<Index> free;
-  for (Index i = 0; i < at.point.size(); ++i) {
-    const bool at_lower = at.point(i) <= box.lower(i) && at.gradient(i) > 0.0;
-    const bool at_upper = at.point(i) >= box.upper(i) && at.gradient(i) < 0.0;
-    if (!at_lower && !at_upper) {
-      free.push_back(i);
-    }
-  }
-  return free;
-}
-
-VectorXd calcNewtonStep(const Place& at, const MatrixXd& curvature, const SearchBox& box) {
-  const std::vector<Index> free = findFree(at, box);
-  VectorXd step = VectorXd::Zero(at.point.size());
-  if (!free.empty()) {
-    const VectorXd downhill = -at.gradient(free);
-    step(free) = linalg::solvePositiveDefinite(curvature(free, free), downhill);
-  }
-  return step;
-}
-
 /// BFGS with Powell's damping, which keeps the curvature positive.
 void learn(const Place& from, const Place& to, MatrixXd& curvature) {
   constexpr double kLeast = 0.2;  // of the curvature along the step so far (Powell 1978)
@@ -96,8 +74,10 @@ bool descend(const Objective& objective, const SearchBox& box, const SearchLimit
   constexpr double kShorter = 0.3, kShortest = 1e-4;
   double radius = kMostStep;
   while (radius > kShortest && result.evaluations < limits.max_evaluations && !isStopRequested(limits.stop)) {
-    VectorXd step = calcNewtonStep(at, curvature, box);
-    if (-0.5 * at.gradient.dot(step) < std::max(kPromised, limits.tolerance)) {
+    VectorXd step =
+        optimization::minimizeQuadratic(curvature, at.gradient, box.lower - at.point, box.upper - at.point);
+    const double promised = -at.gradient.dot(step) - 0.5 * step.dot(curvature * step);
+    if (promised < std::max(kPromised, limits.tolerance)) {
       return true;
     }
     const double longest = step.cwiseAbs().maxCoeff();

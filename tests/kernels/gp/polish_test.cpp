@@ -62,6 +62,24 @@ TEST(Polish, FollowsTheBounds) {
   EXPECT_NEAR(found.end(0), 0.32, 0.01);
 }
 
+// A step cut at two bounds goes uphill here: what lies on them has to be held for the third.
+TEST(Polish, ConvergesAtTwoBounds) {
+  const MatrixXd factor = (MatrixXd(3, 3) << 1.0, 0.9, -0.4, 1.1, -0.1, 1.1, -0.9, -0.7, 0.7).finished();
+  const MatrixXd bowl = 40.0 * factor * factor.transpose();
+  const VectorXd bottom = (VectorXd(3) << 1.7, 1.8, -1.1).finished();
+  const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
+    gradient = bowl * (point - bottom);
+    return LikelihoodEvaluation{true, 0.5 * (point - bottom).dot(gradient), 0.0};
+  };
+  SearchBox box = makeWideBox(3);
+  box.upper.head(2).setZero();
+  const SearchResult found = polish(objective, VectorXd::Constant(3, -1.0), bowl, box, {});
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT(found.evaluations, 12);
+  const VectorXd slope = bowl * (found.end - bottom);
+  EXPECT_NEAR(slope(2), 0.0, 1.0);
+}
+
 TEST(Polish, CountsThePriorOnce) {
   SearchBox box = makeWideBox(2);
   box.prior_precision.setConstant(10.0);
