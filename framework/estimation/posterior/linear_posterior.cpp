@@ -99,12 +99,13 @@ BasinSearchOptions limitSearch(BasinSearchOptions options, Index drawn) {
   return options;
 }
 
-MatrixXd addMedian(const MatrixXd& given, const Prior& prior, Index drawn) {
+MatrixXd addMedian(const MatrixXd& given, const Prior& prior, Index unknown, Index drawn) {
   if (drawn <= kManyUnknown) {
     return given;
   }
-  MatrixXd more(given.rows(), given.cols() + 1);
-  more << given, prior.calcPoint(VectorXd::Constant(given.rows(), 0.5));
+  MatrixXd more = given;
+  more.conservativeResize(unknown, given.cols() + 1);
+  more.rightCols(1) = prior.calcPoint(VectorXd::Constant(unknown, 0.5));
   return more;
 }
 

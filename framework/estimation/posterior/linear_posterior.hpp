@@ -31,7 +31,9 @@ bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins)
 /// takes a simulation with as many derivatives a step, and a machine of many parameters has priors.
 BasinSearchOptions limitSearch(BasinSearchOptions options, Eigen::Index drawn);
 
-/// Points to search from (u x n), with the prior's median where more than kManyUnknown parameters are drawn.
-Eigen::MatrixXd addMedian(const Eigen::MatrixXd& given, const Prior& prior, Eigen::Index drawn);
+/// Points to search from (u x n, or none at all), with the prior's median where more than kManyUnknown of the
+/// u parameters are drawn.
+Eigen::MatrixXd addMedian(const Eigen::MatrixXd& given, const Prior& prior, Eigen::Index unknown,
+                          Eigen::Index drawn);
 
 }  // namespace twinmap

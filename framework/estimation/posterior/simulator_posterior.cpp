@@ -241,9 +241,9 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   ProblemSurface whole(problem);
   MisfitSurface& surface = whole.upd();
   const LogCoordinates& coordinates = whole.getCoordinates();
-  const BasinSearch found =
-      findBasins(surface, toCoordinates(coordinates, addMedian(given, whole.getPrior(), problem.drawn)),
-                 options.seed, limitSearch(options.search, problem.drawn));
+  const MatrixXd starts = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
+  const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed,
+                                       limitSearch(options.search, problem.drawn));
   SimulatorPosterior posterior;
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();

@@ -22,7 +22,7 @@ SimulatorPosterior sampleMany(Problem& problem, const VectorXd& features, int dr
   SimulatorPosteriorOptions options;
   options.draws = draws;
   return samplePosterior(problem.simulator, problem.model, {}, features, VectorXd::Zero(kParameters),
-                         MatrixXd(kParameters, 0), options);
+                         MatrixXd(), options);
 }
 
 /// Entries without structure, so that its columns are well apart.
