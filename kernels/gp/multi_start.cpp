@@ -21,8 +21,26 @@ struct Task {
   std::size_t start;
 };
 
-// Where Newton's steps do not arrive soon, the start was not near an optimum, or near a poor one: L-BFGS,
-// whose line search reaches further, begins there as well, and the better of the two ends counts.
+/// Another search from `start`, with the evaluations that are left; the better end counts.
+void searchFurther(const TrainingSet& set, const Objective& objective, const TargetSearches& target,
+                   const VectorXd& start, SearchLimits limits, SearchResult& best) {
+  limits.max_evaluations -= best.evaluations;
+  if (limits.max_evaluations < 1 || isStopRequested(limits.stop)) {
+    return;
+  }
+  SearchResult further = minimize(objective, set.size(), start, target.box, limits);
+  further.evaluations += best.evaluations;
+  further.largest_jitter = std::max(best.largest_jitter, further.largest_jitter);
+  if (further.objective <= best.objective) {
+    best = std::move(further);
+  } else {
+    best.evaluations = further.evaluations;
+    best.largest_jitter = further.largest_jitter;
+  }
+}
+
+// Where Newton's steps do not arrive soon, L-BFGS, whose line search reaches further, goes on from their end,
+// and begins at the start as well: they may have led to a poor optimum.
 SearchResult searchWarm(const TrainingSet& set, const TrainingOptions& options, const TargetSearches& target,
                         LikelihoodWorkspace& workspace) {
   // Evaluations: from near an optimum 5 to 16, and 26 where ten factors of e lie between.
@@ -32,20 +50,13 @@ SearchResult searchWarm(const TrainingSet& set, const TrainingOptions& options, 
                                       gradient);
   };
   SearchLimits limits{std::min(kSoon, options.max_evaluations), options.tolerance, nullptr, options.stop};
-  const SearchResult polished = polish(objective, target.starts[0], target.curvature, target.box, limits);
-  limits.max_evaluations = options.max_evaluations - polished.evaluations;
-  if (polished.converged || limits.max_evaluations < 1 || isStopRequested(options.stop)) {
-    return polished;
+  SearchResult best = polish(objective, target.starts[0], target.curvature, target.box, limits);
+  if (!best.converged) {
+    limits.max_evaluations = options.max_evaluations;
+    searchFurther(set, objective, target, VectorXd(best.end), limits, best);
+    searchFurther(set, objective, target, target.starts[0], limits, best);
   }
-  SearchResult further = minimize(objective, set.size(), target.starts[0], target.box, limits);
-  if (polished.objective < further.objective) {
-    further.end = polished.end;
-    further.nlml = polished.nlml;
-    further.objective = polished.objective;
-  }
-  further.evaluations += polished.evaluations;
-  further.largest_jitter = std::max(polished.largest_jitter, further.largest_jitter);
-  return further;
+  return best;
 }
 
 // The starts after the first know its optimum, and stop once they have come near it.
