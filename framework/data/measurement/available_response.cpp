@@ -33,7 +33,7 @@ class SampleFinder {
   /// start: added to the times in the file, which may be seconds since 1970 and rounded accordingly.
   SampleFinder(const Samples& samples, double start, double interval, const std::optional<Bounds>& range)
       : samples_(samples), range_(range) {
-    constexpr double kSlack = 1.01, kSameTime = 1e-6, kRounding = 4e-16;
+    constexpr double kSlack = 1.01, kRounding = 4e-16;
     if (samples.times.size() > 1) {
       step_ = calcMedianStep(samples.times);
       tolerance_ = std::max(kSameTime * step_, kRounding * std::abs(start));

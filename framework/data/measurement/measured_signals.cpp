@@ -53,13 +53,13 @@ Bounds calcDelays(const ModelSpec& model, const TableSpec& table) {
 /// That the times cover the excerpt, from `begin` to `end`, without a gap.
 void requireExcerpt(const std::string& source, const VectorXd& times, double start, double begin,
                     double end) {
-  constexpr double kSlack = 1e-6, kLongest = 1.5;
+  constexpr double kLongest = 1.5;
   if (times.size() < 2) {
     throw MeasurementError(source + ": has " + std::to_string(times.size()) +
                            " samples; must have at least 2");
   }
   const double step = calcMedianStep(times);
-  if (times[0] > begin + kSlack * step || times[times.size() - 1] < end - kSlack * step) {
+  if (times[0] > begin + kSameTime * step || times[times.size() - 1] < end - kSameTime * step) {
     const double last = times[times.size() - 1];
     const bool elsewhere = times[0] > end || last < begin;
     throw MeasurementError(source + ": covers " + describeTime(start + times[0]) + " to " +

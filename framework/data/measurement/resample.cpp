@@ -40,7 +40,7 @@ class Interpolation {
   const InterpolationWeights& operator[](Index i) const { return stencils_[static_cast<std::size_t>(i)]; }
 
  private:
-  double getTolerance() const { return 1e-6 * step_; }
+  double getTolerance() const { return kSameTime * step_; }
 
   void requireCovered(double from, double to) const {
     if (times_[0] > from + getTolerance()) {

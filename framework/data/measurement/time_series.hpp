@@ -57,6 +57,9 @@ struct RowRange {
 };
 RowRange findRows(const Eigen::VectorXd& times, double from, double to, Eigen::Index margin);
 
+/// Of a step: times that differ by less are the same, as files round them.
+constexpr double kSameTime = 1e-6;
+
 /// The median of the differences of two or more times.
 double calcMedianStep(const Eigen::VectorXd& times);
 

@@ -43,7 +43,6 @@ VectorXd selectTimes(const VectorXd& times, double from, double to) {
 
 /// At times that the signal covers: its sample that was taken then, or the cubic through the four nearest.
 VectorXd interpolate(const SampledSignal& signal, const VectorXd& times) {
-  constexpr double kSameTime = 1e-6;  // of a step, as resample() has it
   const double same = kSameTime * calcMedianStep(signal.times);
   const double* begin = signal.times.data();
   const Index size = signal.times.size();
@@ -60,7 +59,7 @@ VectorXd interpolate(const SampledSignal& signal, const VectorXd& times) {
 /// At the times of the one with the longer steps, because interpolating the other loses less.
 Pair bringTogether(const SampledSignal& trained, const SampledSignal& measured) {
   constexpr double kSameStep = 1.01;
-  const double step = calcMedianStep(trained.times), slack = 1e-6 * step;
+  const double step = calcMedianStep(trained.times), slack = kSameTime * step;
   const bool finer = calcMedianStep(measured.times) <= kSameStep * step;
   const Index last_trained = trained.times.size() - 1, last_measured = measured.times.size() - 1;
   const double from = std::max({0.0, trained.times[0], measured.times[0]}) - slack;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
 #include "framework/experiment/fields/write_value.hpp"
 
@@ -107,7 +108,6 @@ double SegmentGrid::calcStart(int k) const {
 }
 
 SegmentGrid makeSegmentGrid(const ExperimentSpec& experiment, double length, double end) {
-  constexpr double kSlack = 1e-6;  // of a step, as times are compared when they are read
   if (const std::string memory = findUnstartable(experiment.model); !memory.empty()) {
     throw ExperimentError("segments start from states of their own, which " + memory);
   }
@@ -117,7 +117,7 @@ SegmentGrid makeSegmentGrid(const ExperimentSpec& experiment, double length, dou
   grid.offset = samples.start;
   grid.samples = static_cast<int>(std::lround(length / grid.interval));
   requireSamples(experiment, grid);
-  const double there = std::floor((end - grid.offset) / grid.interval + kSlack) + 1.0;
+  const double there = std::floor((end - grid.offset) / grid.interval + kSameTime) + 1.0;
   grid.count = static_cast<int>(std::max(0.0, there) / grid.samples);
   if (grid.count < 1) {
     throw ExperimentError(fmt::format("the recording ends {} s behind its start, before a segment of {} s",

@@ -38,11 +38,10 @@ VectorXd calcDifference(const VectorXd& times, Index first, double t) {
 
 double calcInterpolationError(const VectorXd& times, const VectorXd& values,
                               const std::vector<double>& needed, double stddev) {
-  constexpr double kSame = 1e-6;  // of a step, as samples are found at needed times
   if (times.size() < kMany || needed.empty()) {
     return 0.0;
   }
-  const double tolerance = kSame * calcMedianStep(times);
+  const double tolerance = kSameTime * calcMedianStep(times);
   double squares = 0.0;
   for (const double t : needed) {
     const Index next = std::lower_bound(times.begin(), times.end(), t - tolerance) - times.begin();

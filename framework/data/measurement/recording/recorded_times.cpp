@@ -14,8 +14,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kSame = 1e-6;  // of a step, as samples are found at needed times
-
 double calcMeanStep(const std::vector<double>& times) {
   return times.size() < 2 ? 1.0 : (times.back() - times.front()) / (static_cast<double>(times.size()) - 1.0);
 }
@@ -51,7 +49,7 @@ class TimeChoice {
     std::copy_if(recorded.begin(), recorded.end(), std::back_inserter(recorded_),
                  [end](double t) { return t > 0.0 && t <= end; });
     step_ = recorded.size() > 1 ? calcMedianStep(recorded) : 0.0;
-    tolerance_ = std::max(kSame * step_, rounding);
+    tolerance_ = std::max(kSameTime * step_, rounding);
   }
 
   /// Empty where the needed times do as well.
