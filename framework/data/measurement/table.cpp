@@ -61,11 +61,20 @@ std::string escapeCell(const std::string& text) {
   return quoted + "\"";
 }
 
+std::string explainNoFile(const fs::path& path) {
+  if (fs::exists(path)) {
+    return ": is not a file";
+  }
+  return path.string().find('=') == std::string::npos
+             ? ": does not exist"
+             : ": does not exist; values of the experiment cannot be given here: write them into its file";
+}
+
 }  // namespace
 
 Table readTable(const fs::path& path, const std::vector<std::string>& wanted, MissingCells missing) {
   if (!fs::is_regular_file(path) && !fs::is_fifo(path) && !fs::is_character_file(path)) {
-    throw MeasurementError(path.string() + (fs::exists(path) ? ": is not a file" : ": does not exist"));
+    throw MeasurementError(path.string() + explainNoFile(path));
   }
   const std::string extension = getExtension(path);
   if (extension == ".mat") {

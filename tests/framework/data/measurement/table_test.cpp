@@ -160,6 +160,10 @@ TEST(ReadTable, ErrorsNameTheFile) {
     return getError([&] { readTable(folder / name); }).substr(folder.getPath().string().size() + 1);
   };
   EXPECT_EQ(getFileError("nothing.csv"), "nothing.csv: does not exist");
+  EXPECT_EQ(
+      getFileError("noise.scale=2"),
+      "noise.scale=2: does not exist; values of the experiment cannot be given here: write them into its "
+      "file");
   std::ofstream(folder / "a.xlsx") << "t";
   EXPECT_EQ(getFileError("a.xlsx"),
             "a.xlsx: must be a .csv, .txt, .tsv, .dat, .mat, .h5 or .hdf5 file, by its name");
