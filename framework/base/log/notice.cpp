@@ -66,9 +66,13 @@ const std::vector<NoticeText> kStatuses{
      "Each recording is explained by parameters of its own, as where friction has another shape than the "
      "model's."},
     {Notice::kUncalibrated, "uncalibrated", true, kDegraded,
-     "of the run's refined test samples the 95 % intervals of a parameter held less than 92 %",
+     "of the run's test samples the 95 % intervals of a parameter held less than 92 %, which chance does in "
+     "one "
+     "of 1000 runs",
      "Sample the posterior, which needs no normal distribution: --posterior.",
-     "Least squares ended in another basin, or at a bound, for some test samples."},
+     "The estimator takes its errors for smaller than they are, as along a ridge; refined, least squares "
+     "ended in "
+     "another basin, or at a bound."},
     {Notice::kNonlinear, "nonlinear", true, kDegraded,
      "the parameters fit, but the misfit around them is not that of a normal distribution",
      "Sample the posterior, which needs no normal distribution: --posterior.",
