@@ -113,7 +113,8 @@ const std::vector<NoticeText> kSimulation{
 const std::vector<NoticeText> kAccuracy{
     {Notice::kIntervalsTooNarrow, "intervals_too_narrow", false, kMisleading,
      "the 95 % intervals contain too few of the true values: {0}", "{1}",
-     "The estimator takes its errors for smaller than they are."},
+     "The estimator takes its errors for smaller than they are; or chance, in 1 % of runs with four "
+     "parameters."},
     {Notice::kIntervalsTooWide, "intervals_too_wide", false, kInfo,
      "the 95 % intervals contain more of the true values than they claim: {0}",
      "Nothing need be done: the intervals are conservative.",
