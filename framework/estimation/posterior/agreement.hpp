@@ -34,10 +34,10 @@ std::vector<PartInformation> linearizeParts(const PosteriorProblem& problem, con
 /// every one of s shared parameters, the sum over n measurements is chi-square of (n - 1) s degrees of
 /// freedom; where one alone determines nothing, or the estimate is at a bound, it is not, so that it is
 /// simulated, 1999 times. The excess itself is no such measure: a window that hardly sees a parameter gains
-/// by it along a bent valley, far from the joint estimate, what no linear model says (twelve of twelve honest
-/// recordings, of 14 windows each, were below p = .23). Where it is beyond that chi-square all the same, with
-/// a tenth of the probability, nothing depends on linear models: the p-value is the smaller one of the two,
-/// that of the excess times ten, so that at most a tenth more measurements than it says are called
+/// by it along a bent valley, far from the joint estimate, what no linear model says (twelve of twelve
+/// agreeing recordings, of 14 windows each, were below p = .23). Where it is beyond that chi-square all the
+/// same, with a tenth of the probability, nothing depends on linear models: the p-value is the smaller one of
+/// the two, that of the excess times ten, so that at most a tenth more measurements than it says are called
 /// contradictory. All misfits contain that of the prior. The result depends on `seed` alone. Cost: some 2000
 /// (n + 1) solutions of u equations.
 Agreement testAgreement(double joint_misfit, const std::vector<double>& separate_misfits,
