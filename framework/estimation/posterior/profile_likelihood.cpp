@@ -71,28 +71,55 @@ MatrixXd listStarts(const importance::WeightedDraws& draws, Index j, double valu
   return starts;
 }
 
-Profile calcProfile(MisfitSurface& surface, const importance::WeightedDraws& draws, Index j) {
+/// Searches from starts in which coordinate j stays, as many in a row for each value, and keeps the best of
+/// each.
+void search(MisfitSurface& surface, Index j, const MatrixXd& starts, std::vector<LocalSurface>& best) {
   constexpr int kIterations = 10;
+  SearchTeam team(surface, starts, VectorXd::Unit(starts.rows(), j).replicate(1, starts.cols()));
+  team.run(kIterations);
+  for (Index i = 0; i < starts.cols(); ++i) {
+    const LocalSurface& local = team.getLocal(i);
+    LocalSurface& kept = best[static_cast<std::size_t>(i * kValues / starts.cols())];
+    if (local.simulated && (!kept.simulated || local.misfit < kept.misfit)) {
+      kept = local;
+    }
+  }
+}
+
+/// What was found at the values next to each, put there: with several flat directions searches end early.
+MatrixXd startFromNeighbours(const std::vector<LocalSurface>& best, Index j, const VectorXd& values,
+                             const MatrixXd& starts) {
+  constexpr Index kNeighbours = 2;
+  MatrixXd neighbours(starts.rows(), kNeighbours * kValues);
+  for (Index i = 0; i < kValues; ++i) {
+    const Index others[kNeighbours] = {std::max<Index>(i - 1, 0), std::min<Index>(i + 1, kValues - 1)};
+    for (Index k = 0; k < kNeighbours; ++k) {
+      const LocalSurface& other = best[static_cast<std::size_t>(others[k])];
+      auto start = neighbours.col(kNeighbours * i + k);
+      start = other.simulated ? other.at : VectorXd(starts.col(i * kStartsPerValue));
+      start[j] = values[i];
+    }
+  }
+  return neighbours;
+}
+
+Profile calcProfile(MisfitSurface& surface, const importance::WeightedDraws& draws, Index j) {
   const VectorXd values = listValues(draws, j);
-  const Index u = draws.points.rows(), count = kValues * kStartsPerValue;
-  MatrixXd starts(u, count);
+  const Index u = draws.points.rows();
+  MatrixXd starts(u, kValues * kStartsPerValue);
   for (Index i = 0; i < kValues; ++i) {
     starts.middleCols(i * kStartsPerValue, kStartsPerValue) =
         listStarts(draws, j, values[i], std::max(values[1] - values[0], 1e-12));
   }
-  SearchTeam team(surface, starts, VectorXd::Unit(u, j).replicate(1, count));
-  team.run(kIterations);
+  std::vector<LocalSurface> best(kValues);
+  search(surface, j, starts, best);
+  search(surface, j, startFromNeighbours(best, j, values, starts), best);
   Profile profile{j, MatrixXd(u, kValues), VectorXd(kValues)};
   Index found = 0;
-  for (Index i = 0; i < kValues; ++i) {
-    const LocalSurface* best = nullptr;
-    for (Index k = i * kStartsPerValue; k < (i + 1) * kStartsPerValue; ++k) {
-      const LocalSurface& local = team.getLocal(k);
-      best = local.simulated && (best == nullptr || local.misfit < best->misfit) ? &local : best;
-    }
-    if (best != nullptr) {
-      profile.points.col(found) = best->at;
-      profile.log_ratios[found++] = -0.5 * best->misfit;
+  for (const LocalSurface& local : best) {
+    if (local.simulated) {
+      profile.points.col(found) = local.at;
+      profile.log_ratios[found++] = -0.5 * local.misfit;
     }
   }
   profile.points.conservativeResize(u, found);

@@ -26,9 +26,9 @@ struct Profile {
 
 /// Of each of the first `count` coordinates, at up to 13 values over three standard deviations of the draws
 /// both ways, but no further than the draws' .1 and 99.9 % quantiles. Each value is searched from the four
-/// draws nearest to it that bear most weight, so from several modes. `points` are in the coordinates of the
-/// surface. Values where nothing could be simulated are left out. Cost: 52 searches of at most 10 iterations
-/// a coordinate, in one batch.
+/// draws nearest to it that bear most weight, so from several modes, then from what was found at the values
+/// beside it. `points` are in the coordinates of the surface. Values where nothing could be simulated are
+/// left out. Cost: 52 searches of at most 10 iterations a coordinate in one batch, then 26.
 std::vector<Profile> calcProfiles(MisfitSurface& surface, const importance::WeightedDraws& draws,
                                   double least_misfit, Eigen::Index count);
 
