@@ -27,8 +27,9 @@ bool areSame(const std::vector<FeatureSpec>& features, const std::vector<Feature
 
 /// An inference whose features are at the times of tables.
 struct DirectInference::AtRecordedTimes {
-  AtRecordedTimes(ExperimentSpec experiment, int draws)
-      : reader(std::move(experiment)), inference(reader, draws, SimulatorRefiner::Model::kTrusted) {}
+  AtRecordedTimes(ExperimentSpec experiment, const SimulatorPosteriorOptions& options)
+      : reader(std::move(experiment)),
+        inference(reader, options.draws, SimulatorRefiner::Model::kTrusted, options.profiles) {}
 
   const MeasurementReader reader;
   DirectInference inference;
@@ -36,12 +37,14 @@ struct DirectInference::AtRecordedTimes {
 
 DirectInference::~DirectInference() = default;
 
-DirectInference::DirectInference(const MeasurementReader& reader, int draws, SimulatorRefiner::Model model)
+DirectInference::DirectInference(const MeasurementReader& reader, int draws, SimulatorRefiner::Model model,
+                                 bool profiles)
     : reader_(reader),
       simulator_(reader.getExperiment(), reader.getLayout(), model),
       options_(makePosteriorOptions(reader.getExperiment(), draws)),
       quantities_(makeDerivedQuantities(reader.getExperiment())),
       prior_(findStatedPrior(reader.getExperiment().model)) {
+  options_.profiles = profiles;
   simulator_.requireNoise();
 }
 
@@ -66,7 +69,7 @@ DirectInference::AtRecordedTimes* DirectInference::followTimes(const Table& tabl
     return nullptr;
   }
   if (!followed_ || !areSame(followed_->reader.getExperiment().features, experiment->features)) {
-    followed_ = std::make_unique<AtRecordedTimes>(std::move(*experiment), options_.draws);
+    followed_ = std::make_unique<AtRecordedTimes>(std::move(*experiment), options_);
   }
   return followed_.get();
 }

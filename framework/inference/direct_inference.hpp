@@ -9,10 +9,12 @@ namespace twinmap {
 /// (samplePosterior).
 class DirectInference final : public MeasurementInference {
  public:
-  /// draws: of a round. The reader must outlive the object. Throws ExperimentError where the simulator cannot
-  /// be made, a feature has no noise or the draws are fewer than kMinPosteriorDraws.
+  /// draws: of a round; profiles: whether each posterior has them too. The reader must outlive the object.
+  /// Throws ExperimentError where the simulator cannot be made, a feature has no noise or the draws are fewer
+  /// than kMinPosteriorDraws.
   explicit DirectInference(const MeasurementReader& reader, int draws = SimulatorPosteriorOptions{}.draws,
-                           SimulatorRefiner::Model model = SimulatorRefiner::Model::kToBeChecked);
+                           SimulatorRefiner::Model model = SimulatorRefiner::Model::kToBeChecked,
+                           bool profiles = false);
 
   ~DirectInference() override;
 

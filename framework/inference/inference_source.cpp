@@ -34,7 +34,8 @@ std::unique_ptr<MeasurementInference> makeDirect(const MeasurementReader& reader
         "out, or give the folder of a run");
   }
   return std::make_unique<DirectInference>(
-      reader, options.posterior_draws > 0 ? options.posterior_draws : SimulatorPosteriorOptions{}.draws);
+      reader, options.posterior_draws > 0 ? options.posterior_draws : SimulatorPosteriorOptions{}.draws,
+      SimulatorRefiner::Model::kToBeChecked, options.profiles);
 }
 
 }  // namespace

@@ -46,6 +46,7 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
   inferred.prior = prior_;
   inferred.by_estimator = map_->infer(features, known, *workspace.map);
   inferred.estimator_is_calibrated = isCalibrated(*map_, trust_ ? &*trust_ : nullptr);
+  inferred.estimator_coverage_is_short = trust_ && trust_->coverage.isShort();
   inferred.basins = map_->listBasins(*workspace.map);
   if (trust_) {
     inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map->findExplanation(),

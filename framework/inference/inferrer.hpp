@@ -42,7 +42,8 @@ struct InferredMeasurement {
   std::vector<std::string> left_out{};  ///< what of the recording is missing and why, a phrase each
   Estimate by_estimator;                ///< not given where there is no trained estimator
   bool estimator_is_calibrated = true;  ///< isCalibrated()
-  std::optional<Trust> trust;           ///< none where the run could fit no trust model
+  bool estimator_coverage_is_short = false;  ///< of the run's test samples, unrefined (CoverageRecord)
+  std::optional<Trust> trust;                ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust
   Eigen::MatrixXd covariance{};  ///< there, u x u in half-widths, with the surrogate's errors; empty likewise
   /// u x n: the separate places that fit by the estimator, in the parameters' units, the likeliest first;

@@ -191,6 +191,7 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
     made.estimate.mixture = makeMixture(posterior.modes, p);
     made.estimate.prior_stddev = posterior.prior_stddev.head(p);
     made.shape = posterior.findShape(p);
+    made.profiles = posterior.profiles;
   }
   return made;
 }

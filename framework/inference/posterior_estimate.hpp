@@ -65,6 +65,7 @@ struct PosteriorEstimate {
   std::string message;                                  ///< why it is not reliable; else empty
   std::optional<SimulatorFit> fit;                      ///< where it is the simulator's
   PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
+  std::vector<Profile> profiles;                        ///< likewise, where they were asked for
 
   bool isReliable() const { return message.empty(); }
   const char* getStatus() const { return isReliable() ? "ok" : "unreliable"; }

@@ -143,7 +143,8 @@ bool isEstimatorLimited(const InferredMeasurement& inferred) {
 }
 
 bool isUncalibrated(const InferredMeasurement& inferred) {
-  return inferred.coverage_is_short && isAccepted(inferred) && !isSampled(inferred);
+  return !isSampled(inferred) &&
+         (isAccepted(inferred) ? inferred.coverage_is_short : inferred.estimator_coverage_is_short);
 }
 
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {

@@ -21,8 +21,8 @@ constexpr double kEstimatorLimitedRatio = 1.5;
 /// Whether the estimate is the estimator's and its errors are mostly the estimator's own, or not known to it.
 bool isEstimatorLimited(const InferredMeasurement& inferred);
 
-/// Whether the estimate is refined, and the intervals of the run's refined test samples held less than they
-/// say.
+/// Whether the intervals of the run's test samples held less than they say, as this estimate was made: by the
+/// estimator, or refined.
 bool isUncalibrated(const InferredMeasurement& inferred);
 
 /// Names of all that is to be said against an estimate, the most severe first: "not_simulated"; what the

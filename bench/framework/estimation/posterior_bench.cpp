@@ -112,14 +112,18 @@ std::optional<Measured> PosteriorBench::measure(int test) const {
   return measured;
 }
 
-Judged PosteriorBench::judge(const Measured& measured, int test) const {
+InferredMeasurement PosteriorBench::infer(const Measured& measured, int draws, std::uint64_t seed) const {
   ExperimentSpec own = experiment_;
-  own.seed += static_cast<std::uint64_t>(test);
+  own.seed = seed;
   const MeasurementReader reader(std::move(own));
-  DirectInference inference(reader, request_.draws);
+  DirectInference inference(reader, draws);
   const Index known = measured.truth.size() - static_cast<Index>(unknown_.size());
+  return inference.infer(measured.features, measured.truth.tail(known));
+}
+
+Judged PosteriorBench::judge(const Measured& measured, int test) const {
   const std::clock_t begin = std::clock();
-  const InferredMeasurement inferred = inference.infer(measured.features, measured.truth.tail(known));
+  const InferredMeasurement inferred = infer(measured, request_.draws, experiment_.seed);
   const Estimate estimate = selectEstimate(inferred);
   Judged judged;
   judged.seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
@@ -138,6 +142,9 @@ Judged PosteriorBench::judge(const Measured& measured, int test) const {
   if (judged.reliable) {
     judged.ridges = joinRidges(inferred.ridges, getParameters());
     compare(estimate, measured, test, judged);
+    if (request_.reference > 0) {
+      compareWithMore(estimate, measured, test, judged);
+    }
   }
   return judged;
 }
@@ -157,6 +164,18 @@ void PosteriorBench::compare(const Estimate& estimate, const Measured& measured,
     judged.held50[j] = holds(estimate.findIntervals(j, Coverage::k50), truth[j]) ? 1.0 : 0.0;
   }
   judged.ranks = rank(estimate, truth, test);
+}
+
+void PosteriorBench::compareWithMore(const Estimate& estimate, const Measured& measured, int test,
+                                     Judged& judged) const {
+  constexpr std::uint64_t kOther = 1000;
+  const InferredMeasurement inferred =
+      infer(measured, request_.reference, experiment_.seed + kOther + static_cast<std::uint64_t>(test));
+  if (inferred.posterior->isReliable()) {
+    const Estimate better = selectEstimate(inferred);
+    judged.mean_error = (estimate.mean - better.mean).cwiseQuotient(better.stddev);
+    judged.stddev_error = estimate.stddev.cwiseQuotient(better.stddev).array() - 1.0;
+  }
 }
 
 /// Among draws of equal weight; together by the distance from the mean, in standard deviations: those are of

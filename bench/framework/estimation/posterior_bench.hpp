@@ -19,6 +19,7 @@ struct StudyRequest {
   std::string file;
   int tests = 60, draws = SimulatorPosteriorOptions{}.draws;
   std::uint64_t seed = 1;
+  int reference = 0;                   ///< draws of posteriors to compare with; 0: none
   std::map<std::string, double> held;  ///< truths that are not drawn
 };
 
@@ -37,6 +38,8 @@ struct Judged {
   Eigen::VectorXd z, held95, held50;  ///< p; 1 where the interval holds
   Eigen::VectorXd error, limit;       ///< p, in widths
   Eigen::VectorXi ranks;              ///< p + 1
+  /// p: of mean, in sds, and sd against those of more draws, as shares; empty where none are asked for.
+  Eigen::VectorXd mean_error, stddev_error;
   double seconds = 0.0, simulations = 0.0, size = 0.0, pareto_shape = 0.0;
   double chi_square = 0.0, excess = 0.0;  ///< of the best fit; above that of the truth
   int found_best = 0, starts = 0;
@@ -55,12 +58,14 @@ class PosteriorBench {
   /// Nothing where the machine cannot be simulated.
   std::optional<Measured> measure(int test) const;
 
-  /// With random numbers of its own: errors that all posteriors share would pass for miscalibration.
+  /// With the random numbers of `infer`, which are the same for every measurement.
   Judged judge(const Measured& measured, int test) const;
 
  private:
   Eigen::VectorXd drawTruth(int test) const;
+  InferredMeasurement infer(const Measured& measured, int draws, std::uint64_t seed) const;
   void compare(const Estimate& estimate, const Measured& measured, int test, Judged& judged) const;
+  void compareWithMore(const Estimate& estimate, const Measured& measured, int test, Judged& judged) const;
   Eigen::VectorXi rank(const Estimate& estimate, const Eigen::VectorXd& truth, int test) const;
 
   const StudyRequest request_;

@@ -1,9 +1,10 @@
 // How right inference without a run is on a mechanism:
-//   posterior_study FILE.yaml [tests] [draws] [seed] [NAME=VALUE ...]
+//   posterior_study FILE.yaml [tests] [draws] [seed] [reference=DRAWS] [NAME=VALUE ...]
 // simulates measurements of machines drawn from the bounds (with the parameters named held at their values),
 // infers each as `infer FILE.yaml m.csv` does and prints what the statuses were, how often the intervals
 // hold, the errors against the information limit, simulation-based calibration, the combinations that were
-// named, and last a row of the table in docs/benchmarks/posterior.md.
+// named, how far mean and sd are from those of as many draws as `reference` says, and last a row of the table
+// in docs/benchmarks/posterior.md.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -128,13 +129,42 @@ void printRow(const StudyRequest& request, const Totals& totals, const Figures& 
              100.0 * totals.ok / tests);
 }
 
+/// What the errors of all measurements have in common, their mean, and how far they scatter about it.
+std::string describeErrors(const Eigen::ArrayXd& errors, double unit) {
+  return fmt::format("{:+.2f} +- {:.2f}", unit * errors.mean(),
+                     unit * std::sqrt((errors - errors.mean()).square().mean()));
+}
+
+/// What is left to chance by the number of draws: errors against many more of them.
+void printDrawErrors(const std::vector<Judged>& judged, const std::vector<ParameterSpec>& parameters) {
+  constexpr double kPercent = 100.0;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    std::vector<double> means, stddevs;
+    for (const Judged& one : judged) {
+      if (one.mean_error.size() > 0) {
+        means.push_back(one.mean_error[static_cast<Index>(j)]);
+        stddevs.push_back(one.stddev_error[static_cast<Index>(j)]);
+      }
+    }
+    const auto count = static_cast<Index>(means.size());
+    fmt::print("  {:>10}  by draws: mean off by {} % of sd, sd by {} %\n", parameters[j].name.text,
+               describeErrors(Eigen::Map<Eigen::ArrayXd>(means.data(), count), kPercent),
+               describeErrors(Eigen::Map<Eigen::ArrayXd>(stddevs.data(), count), kPercent));
+  }
+}
+
 StudyRequest readRequest(int argc, char** argv) {
   StudyRequest request;
   int position = 0;
   for (int i = 1; i < argc; ++i) {
     const std::string text = argv[i];
     if (const std::size_t equals = text.find('='); equals != std::string::npos) {
-      request.held[text.substr(0, equals)] = std::stod(text.substr(equals + 1));
+      const std::string name = text.substr(0, equals), value = text.substr(equals + 1);
+      if (name == "reference") {
+        request.reference = std::stoi(value);
+      } else {
+        request.held[name] = std::stod(value);
+      }
       continue;
     }
     switch (position++) {
@@ -175,6 +205,9 @@ int run(const StudyRequest& request) {
   if (totals.reliable > 0) {
     const Figures figures = summarize(judged, static_cast<Index>(bench.getParameters().size()));
     printFigures(figures, bench.getParameters());
+    if (request.reference > 0) {
+      printDrawErrors(judged, bench.getParameters());
+    }
     printRow(request, totals, figures);
   }
   return 0;
@@ -186,7 +219,9 @@ int run(const StudyRequest& request) {
 int main(int argc, char** argv) {
   const twinmap::StudyRequest request = twinmap::readRequest(argc, argv);
   if (request.file.empty()) {
-    fmt::print(stderr, "usage: posterior_study FILE.yaml [tests] [draws] [seed] [NAME=VALUE ...]\n");
+    fmt::print(
+        stderr,
+        "usage: posterior_study FILE.yaml [tests] [draws] [seed] [reference=DRAWS] [NAME=VALUE ...]\n");
     return 2;
   }
   return twinmap::run(request);

@@ -66,9 +66,13 @@ const std::vector<NoticeText> kStatuses{
      "Each recording is explained by parameters of its own, as where friction has another shape than the "
      "model's."},
     {Notice::kUncalibrated, "uncalibrated", true, kDegraded,
-     "of the run's refined test samples the 95 % intervals of a parameter held less than 92 %",
+     "of the run's test samples the 95 % intervals of a parameter held less than 92 %, which chance does in "
+     "one "
+     "of 1000 runs",
      "Sample the posterior, which needs no normal distribution: --posterior.",
-     "Least squares ended in another basin, or at a bound, for some test samples."},
+     "The estimator takes its errors for smaller than they are, as along a ridge; refined, least squares "
+     "ended in "
+     "another basin, or at a bound."},
     {Notice::kNonlinear, "nonlinear", true, kDegraded,
      "the parameters fit, but the misfit around them is not that of a normal distribution",
      "Sample the posterior, which needs no normal distribution: --posterior.",
@@ -109,7 +113,8 @@ const std::vector<NoticeText> kSimulation{
 const std::vector<NoticeText> kAccuracy{
     {Notice::kIntervalsTooNarrow, "intervals_too_narrow", false, kMisleading,
      "the 95 % intervals contain too few of the true values: {0}", "{1}",
-     "The estimator takes its errors for smaller than they are."},
+     "The estimator takes its errors for smaller than they are; or chance, in 1 % of runs with four "
+     "parameters."},
     {Notice::kIntervalsTooWide, "intervals_too_wide", false, kInfo,
      "the 95 % intervals contain more of the true values than they claim: {0}",
      "Nothing need be done: the intervals are conservative.",

@@ -3,20 +3,10 @@
 #include <Random123/philox.h>
 
 #include <Random123/uniform.hpp>
-#include <boost/math/constants/constants.hpp>
-#include <boost/math/special_functions/erf.hpp>
+
+#include "framework/base/random/standard_normal.hpp"
 
 namespace twinmap {
-
-namespace {
-
-double toNormal(double uniform) {
-  using boost::math::policies::make_policy;
-  const auto in_double = make_policy(boost::math::policies::promote_double<false>());
-  return -boost::math::constants::root_two<double>() * boost::math::erfc_inv(2.0 * uniform, in_double);
-}
-
-}  // namespace
 
 double RandomStream::calcUniform(std::uint64_t sample, std::uint64_t channel, std::uint64_t replicate) const {
   const r123::Philox4x64::ctr_type counter{{sample, channel, replicate, 0}};
@@ -25,7 +15,7 @@ double RandomStream::calcUniform(std::uint64_t sample, std::uint64_t channel, st
 }
 
 double RandomStream::calcNormal(std::uint64_t sample, std::uint64_t channel, std::uint64_t replicate) const {
-  return toNormal(calcUniform(sample, channel, replicate));
+  return toStandardNormal(calcUniform(sample, channel, replicate));
 }
 
 }  // namespace twinmap

@@ -120,6 +120,7 @@ struct InferArguments {
   int posterior_draws = 0;          ///< of each measurement's posterior; 0: none
   std::string posterior_from;       ///< "simulator", "surrogate"; "": the simulator where that is fast
   std::string draws;                ///< file for them; "": none
+  std::string profile;              ///< file for profile likelihoods; "": none
   std::string page;                 ///< file for the parameters over the measurements; "": none
   bool diagnose = false;            ///< of each model_mismatch, say at length what the model lacks
 };

@@ -47,6 +47,12 @@ void addPosterior(CLI::App& command, InferArguments& arguments) {
   command.add_option("--draws", arguments.draws, "File for the posterior's joint draws (CSV)")
       ->type_name("FILE")
       ->needs(posterior);
+  command
+      .add_option(
+          "--profile", arguments.profile,
+          "File for the profile likelihood of each parameter on the simulator (CSV): it is held at 13 "
+          "values, and the others are fitted anew")
+      ->type_name("FILE");
 }
 
 void addInfer(CLI::App& app) {

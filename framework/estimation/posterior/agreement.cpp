@@ -1,6 +1,7 @@
 #include "framework/estimation/posterior/agreement.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -17,6 +18,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int kReplicates = 1999;
+constexpr double kTimes = 10.0;  // the p-value of the excess itself, which few contradictions need
 
 /// By how much 2 g'd - d'Id grows above 0 within the box of steps: free coordinates by Newton's step, those
 /// that would leave the box held at its side, until none does.
@@ -59,30 +61,47 @@ MatrixXd factorizeInformation(const MatrixXd& information) {
   return linalg::calcCholesky(regular).lower;
 }
 
-/// The information of the prior near a point, in LogCoordinates.
-MatrixXd linearizePrior(const PosteriorProblem& problem, const LogCoordinates& coordinates,
-                        const VectorXd& at) {
+/// The prior near a point, in LogCoordinates; its misfit is not wanted.
+PriorMisfit linearizePrior(const PosteriorProblem& problem, const LogCoordinates& coordinates,
+                           const VectorXd& at) {
   const Prior prior(problem.unknown, problem.priors);
   if (prior.isUniform()) {
-    return MatrixXd::Zero(at.size(), at.size());
+    return {0.0, VectorXd::Zero(at.size()), MatrixXd::Zero(at.size(), at.size())};
   }
   const VectorXd slopes = coordinates.calcSlopes(at).cwiseProduct(coordinates.getHalfWidths());
-  return slopes.asDiagonal() * prior.calcMisfit(coordinates.toParameters(at)).information *
-         slopes.asDiagonal();
+  const PriorMisfit local = prior.calcMisfit(coordinates.toParameters(at));
+  return {0.0, slopes.cwiseProduct(local.descent),
+          slopes.asDiagonal() * local.information * slopes.asDiagonal()};
+}
+
+/// What the parameters that have a normal prior gain of it alone, by its descent: its misfit.
+double calcPriorGain(const MatrixXd& information, const VectorXd& descent) {
+  std::vector<Index> known;
+  for (Index j = 0; j < descent.size(); ++j) {
+    if (information(j, j) > 0.0) {
+      known.push_back(j);
+    }
+  }
+  if (known.empty()) {
+    return 0.0;
+  }
+  const VectorXd own = descent(known);
+  return own.dot(linalg::solvePositiveDefinite(MatrixXd(information(known, known)), own));
 }
 
 /// The excess of one set of agreeing measurements with random errors, and with a prior that errs as it
 /// states.
 class ExcessSimulation {
  public:
-  ExcessSimulation(const std::vector<PartInformation>& parts, const MatrixXd& prior, const VectorXd& at,
+  ExcessSimulation(const std::vector<PartInformation>& parts, const PriorMisfit& prior, const VectorXd& at,
                    std::uint64_t seed)
       : parts_(parts),
-        prior_(prior),
-        prior_factor_(factorizeInformation(prior)),
+        prior_(prior.information),
+        prior_descent_(prior.descent),
+        prior_factor_(factorizeInformation(prior.information)),
         lower_(-1.0 - at.array()),
         upper_(1.0 - at.array()),
-        total_(prior),
+        total_(prior.information),
         random_(seed, RandomPurpose::kAgreement) {
     for (const PartInformation& part : parts) {
       factors_.push_back(factorizeInformation(part.information));
@@ -90,21 +109,23 @@ class ExcessSimulation {
     }
   }
 
-  double calcExcess(std::uint64_t replicate) const {
-    const VectorXd errors = drawNormals(replicate, parts_.size(), prior_.rows());
-    const VectorXd of_prior = prior_factor_ * errors;
-    VectorXd joint = of_prior;
-    double excess = calcPriorMisfit(errors);
+  /// Of measurements that agree.
+  double simulateExcess(std::uint64_t replicate) const {
+    std::vector<VectorXd> descents;
     for (std::size_t k = 0; k < parts_.size(); ++k) {
-      const std::vector<Index>& unknown = parts_[k].unknown;
-      const VectorXd gradient = factors_[k] * drawNormals(replicate, k, static_cast<Index>(unknown.size()));
-      joint(unknown) += gradient;
-      const VectorXd own = gradient + of_prior(unknown);
-      excess +=
-          calcGain(parts_[k].information + prior_(unknown, unknown), own, lower_(unknown), upper_(unknown)) -
-          calcPriorMisfit(errors, unknown);
+      descents.push_back(factors_[k] *
+                         drawNormals(replicate, k, static_cast<Index>(parts_[k].unknown.size())));
     }
-    return excess - calcGain(total_, joint, lower_, upper_);
+    return calcExcess(descents, prior_factor_ * drawNormals(replicate, parts_.size(), prior_.rows()));
+  }
+
+  /// Of those that were measured, by their linear models.
+  double calcExcess() const {
+    std::vector<VectorXd> descents;
+    for (const PartInformation& part : parts_) {
+      descents.push_back(part.descent);
+    }
+    return calcExcess(descents, prior_descent_);
   }
 
  private:
@@ -114,20 +135,45 @@ class ExcessSimulation {
     return normals;
   }
 
-  double calcPriorMisfit(const VectorXd& errors) const {
-    return (prior_.diagonal().array() > 0.0).select(errors.array().square(), 0.0).sum();
-  }
-  double calcPriorMisfit(const VectorXd& errors, const std::vector<Index>& unknown) const {
-    return (prior_.diagonal()(unknown).array() > 0.0).select(errors(unknown).array().square(), 0.0).sum();
+  double calcExcess(const std::vector<VectorXd>& descents, const VectorXd& of_prior) const {
+    VectorXd joint = of_prior;
+    double excess = calcPriorGain(prior_, of_prior);
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const std::vector<Index>& unknown = parts_[k].unknown;
+      joint(unknown) += descents[k];
+      const MatrixXd prior = prior_(unknown, unknown);
+      const VectorXd own_prior = of_prior(unknown);
+      excess +=
+          calcGain(parts_[k].information + prior, descents[k] + own_prior, lower_(unknown), upper_(unknown)) -
+          calcPriorGain(prior, own_prior);
+    }
+    return excess - calcGain(total_, joint, lower_, upper_);
   }
 
   const std::vector<PartInformation>& parts_;
-  const MatrixXd prior_, prior_factor_;
+  const MatrixXd prior_;
+  const VectorXd prior_descent_;
+  const MatrixXd prior_factor_;
   const VectorXd lower_, upper_;
   std::vector<MatrixXd> factors_;
   MatrixXd total_;
   const RandomStream random_;
 };
+
+/// How often measurements that agree have such an excess at most: where each determines all that it has in
+/// common with others, and the prior, which one at most of them explains, errs as it states.
+double calcLargestProbability(double excess, const std::vector<PartInformation>& parts,
+                              const MatrixXd& prior) {
+  auto degrees =
+      static_cast<double>((prior.diagonal().array() > 0.0).count()) - static_cast<double>(prior.rows());
+  for (const PartInformation& part : parts) {
+    degrees += static_cast<double>(part.unknown.size());
+  }
+  if (!(degrees > 0.0) || !(excess > 0.0)) {
+    return 1.0;
+  }
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(degrees), excess));
+}
 
 }  // namespace
 
@@ -147,7 +193,7 @@ std::vector<PartInformation> linearizeParts(const PosteriorProblem& problem, con
     if (!local.simulated) {
       throw std::runtime_error("the joint estimate cannot be simulated");
     }
-    parts.push_back({trial.unknown, local.information});
+    parts.push_back({trial.unknown, local.information, local.descent});
   }
   return parts;
 }
@@ -163,12 +209,16 @@ Agreement testAgreement(double joint_misfit, const std::vector<double>& separate
   agreement.excess = joint_misfit - std::accumulate(separate_misfits.begin(), separate_misfits.end(), 0.0);
   const LogCoordinates coordinates(problem.unknown);
   const VectorXd at = coordinates.fromParameters(best);
-  const ExcessSimulation simulation(parts, linearizePrior(problem, coordinates, at), at, seed);
+  const PriorMisfit prior = linearizePrior(problem, coordinates, at);
+  const ExcessSimulation simulation(parts, prior, at, seed);
+  const double linear = simulation.calcExcess();
   int as_large = 0;
   for (int i = 0; i < kReplicates; ++i) {
-    as_large += simulation.calcExcess(static_cast<std::uint64_t>(i)) >= agreement.excess ? 1 : 0;
+    as_large += simulation.simulateExcess(static_cast<std::uint64_t>(i)) >= linear ? 1 : 0;
   }
-  agreement.p_value = (1.0 + as_large) / (kReplicates + 1.0);
+  const double of_scores = (1.0 + as_large) / (kReplicates + 1.0);
+  const double of_excess = kTimes * calcLargestProbability(agreement.excess, parts, prior.information);
+  agreement.p_value = std::max(std::min(of_scores, of_excess), 1.0 / (kReplicates + 1.0));
   return agreement;
 }
 

@@ -9,7 +9,7 @@
 #include "framework/estimation/posterior/bound_test.hpp"
 #include "framework/estimation/posterior/linear_posterior.hpp"
 #include "framework/estimation/posterior/posterior_draws.hpp"
-#include "framework/estimation/posterior/profile_ends.hpp"
+#include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
@@ -214,6 +214,16 @@ void setDraws(const AdaptiveDraws& drawn, const Landscape& landscape, const LogC
                               projectBasins(landscape.basins, coordinates.getCount()), landscape.valleys);
 }
 
+/// In the logarithms, whatever the draws were drawn in.
+void setProfiles(const PosteriorProblem& problem, ProblemSurface& whole, SimulatorPosterior& posterior) {
+  const LogCoordinates& coordinates = whole.getCoordinates();
+  const importance::WeightedDraws draws{toCoordinates(coordinates, posterior.draws), posterior.weights};
+  posterior.profiles = calcProfiles(whole.upd(), draws, posterior.misfit, problem.drawn);
+  for (Profile& profile : posterior.profiles) {
+    profile.points = toParameters(coordinates, profile.points);
+  }
+}
+
 }  // namespace
 
 bool SimulatorPosterior::isExplained() const {
@@ -264,6 +274,9 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
     setDraws(sampling.drawn, sampling.landscape, LogCoordinates(kept, sampling.plain), posterior);
     posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
+    if (options.profiles && problem.drawn == surface.getDimensions() && problem.drawn <= kManyUnknown) {
+      setProfiles(problem, whole, posterior);
+    }
   }
   return posterior;
 }

@@ -9,6 +9,7 @@
 #include "framework/estimation/posterior/basin_search.hpp"
 #include "framework/estimation/posterior/posterior_draws.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
+#include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/estimation/refined/misfit.hpp"
 #include "framework/estimation/segments/segmented_recording.hpp"
 
@@ -27,6 +28,7 @@ struct SimulatorPosterior {
   Eigen::VectorXd weights;           ///< n, sum 1
   Eigen::VectorXd best;              ///< all unknown, the least misfit; there where anything was simulated
   std::vector<PosteriorMode> modes;  ///< the heaviest first
+  std::vector<Profile> profiles;     ///< of all unknown, in their units, where they were asked for
   std::vector<Eigen::Index>
       beyond;                   ///< of all unknown, those that fit best beyond a bound (findBeyondBounds)
   double misfit = 0.0;          ///< there: chi-square and that of the prior
@@ -80,6 +82,7 @@ struct PosteriorProblem {
 
 struct SimulatorPosteriorOptions : PosteriorDrawOptions {
   BasinSearchOptions search{};
+  bool profiles = false;  ///< whether profile likelihoods are wanted, of up to kManyUnknown, all drawn
 };
 
 /// Finds every basin (findBasins), then samples all of them together (importance::sampleAdaptively) in

@@ -31,6 +31,7 @@ MeasurementSession::MeasurementSession(const Inferrer& inferrer, const SessionOp
       posterior_options_(makePosteriorOptions(
           inferrer.getExperiment(),
           options.posterior_draws != 0 ? options.posterior_draws : SimulatorPosteriorOptions{}.draws)) {
+  posterior_options_.profiles = options.profiles;
   const ExperimentSpec& experiment = inferrer.getExperiment();
   const bool may_refine = options.refine.value_or(experiment.refine != RefineMode::kNever);
   if (may_refine || options.posterior_draws != 0) {
@@ -75,8 +76,9 @@ InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<
 
 DirectInference& MeasurementSession::getDirect() {
   if (!direct_) {
-    direct_ = std::make_unique<DirectInference>(getReader(), posterior_options_.draws,
-                                                SimulatorRefiner::Model::kTrusted);
+    direct_ =
+        std::make_unique<DirectInference>(getReader(), posterior_options_.draws,
+                                          SimulatorRefiner::Model::kTrusted, posterior_options_.profiles);
   }
   return *direct_;
 }

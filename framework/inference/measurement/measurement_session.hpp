@@ -21,10 +21,12 @@ struct SessionOptions {
   /// Whose posterior; none: the simulator's where it takes tenths of a second
   /// (SimulatorRefiner::samplesFast), else the surrogate's.
   std::optional<PosteriorSource> posterior_from{};
+  /// Whether posteriors on the simulator come with profile likelihoods.
+  bool profiles = false;
 
   friend bool operator<(const SessionOptions& a, const SessionOptions& b) {
-    return std::tie(a.refine, a.posterior_draws, a.posterior_from) <
-           std::tie(b.refine, b.posterior_draws, b.posterior_from);
+    return std::tie(a.refine, a.posterior_draws, a.posterior_from, a.profiles) <
+           std::tie(b.refine, b.posterior_draws, b.posterior_from, b.profiles);
   }
 };
 

@@ -98,6 +98,14 @@ std::string makeDerivedRows(const InferredMeasurement& inferred, const Estimate&
   return text;
 }
 
+std::string listColumns(const std::vector<ParameterSpec>& unknown) {
+  std::string text;
+  for (const ParameterSpec& parameter : unknown) {
+    text += "," + escapeCsv(parameter.name.text);
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string makeInferenceCsvHeader(bool refined, bool posterior) {
@@ -132,11 +140,7 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
 }
 
 std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown) {
-  std::string text = "source,start,draw,weight";
-  for (const ParameterSpec& parameter : unknown) {
-    text += "," + escapeCsv(parameter.name.text);
-  }
-  return text + "\n";
+  return "source,start,draw,weight" + listColumns(unknown);
 }
 
 std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
@@ -152,6 +156,31 @@ std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
       text += "," + toText(value);
     }
     text += "\n";
+  }
+  return text;
+}
+
+std::string makeProfileCsvHeader(const std::vector<ParameterSpec>& unknown) {
+  return "source,start,parameter,value,log_likelihood_ratio" + listColumns(unknown);
+}
+
+std::string makeProfileCsvRows(const InferredMeasurement& inferred,
+                               const std::vector<ParameterSpec>& unknown) {
+  if (!inferred.posterior) {
+    return "";
+  }
+  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
+  std::string text;
+  for (const Profile& profile : inferred.posterior->profiles) {
+    const std::string& name = unknown[static_cast<std::size_t>(profile.parameter)].name.text;
+    for (Index i = 0; i < profile.log_ratios.size(); ++i) {
+      text += fmt::format("{},{},{},{}", measurement, escapeCsv(name),
+                          toText(profile.points(profile.parameter, i)), toText(profile.log_ratios[i]));
+      for (const double value : profile.points.col(i)) {
+        text += "," + toText(value);
+      }
+      text += "\n";
+    }
   }
   return text;
 }

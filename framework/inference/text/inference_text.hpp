@@ -44,6 +44,12 @@ std::string makeErrorJson(const std::string& source, double start, const std::st
 std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown);
 std::string makeDrawsCsvRows(const InferredMeasurement& inferred);
 
+/// CSV of profile likelihoods, a row a value: source, start, parameter, value, log_likelihood_ratio, then all
+/// unknown parameters there; likewise.
+std::string makeProfileCsvHeader(const std::vector<ParameterSpec>& unknown);
+std::string makeProfileCsvRows(const InferredMeasurement& inferred,
+                               const std::vector<ParameterSpec>& unknown);
+
 /// "the largest misfit is in y between 0.1 s and 0.4 s"; "" without a trust model.
 std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features);
 

@@ -89,6 +89,23 @@ class Posterior(FolderTestCase):
             self.assertLess(abs(weights @ values - found["mean"]), 1e-6 * found["sd"])
             self.assertAlmostEqual((weights @ (values - found["mean"]) ** 2) ** 0.5 / found["sd"], 1, places=6)
 
+    def test_profiles_fall_from_the_estimate_to_both_sides(self):
+        for source in (self.run_folder, TABLE1):
+            file = self.folder / "profile.csv"
+            answer = json.loads(self.infer(self.measured, "--json", "--profile", file, run=source))
+            rows = read_csv(file)
+            self.assertEqual([row["parameter"] for row in rows], [name for name in TRUE for _ in range(13)])
+            for name in TRUE:
+                found = answer["parameters"][name]
+                own = [row for row in rows if row["parameter"] == name]
+                values = np.array([float(row["value"]) for row in own])
+                ratios = np.array([float(row["log_likelihood_ratio"]) for row in own])
+                self.assertEqual([row[name] for row in own], [row["value"] for row in own])
+                self.assertTrue((np.diff(values) > 0).all())
+                self.assertLessEqual(ratios.max(), 0)
+                distances = (values - found["mean"]) / found["sd"]
+                np.testing.assert_allclose(ratios, -0.5 * distances**2, atol=1.5)
+
     def test_is_the_same_in_every_format_and_whatever_came_before(self):
         alone = json.loads(self.infer(self.measured, "--json", "--posterior"))["posterior"]
         stream = 2 * (self.measured.read_text() + "\n")
@@ -127,6 +144,12 @@ class Posterior(FolderTestCase):
             ([self.run_folder, self.measured, "--posterior=10"], "at least 200 draws, not 10"),
             ([self.run_folder, self.measured, "--draws", "d.csv"], "--draws requires --posterior"),
             ([self.run_folder, self.measured, "--posterior", "--draws", self.folder / "no/d.csv"], "cannot be written"),
+            ([TABLE1, self.measured, "--profile", self.folder / "no/p.csv"], "cannot be written"),
+            ([TABLE1, self.measured, "--joint", "--profile", "p.csv"], "one measurement at a time"),
+            (
+                [self.run_folder, self.measured, "--profile", "p.csv", "--posterior-from", "surrogate"],
+                "--profile is of the simulator",
+            ),
         ):
             result = call("infer", *arguments)
             self.assertNotEqual(result.returncode, 0)

@@ -183,6 +183,15 @@ TEST(SelectEstimate, WithoutAReliablePosteriorIsNeverOk) {
   EXPECT_EQ(listStatuses(inferred), Statuses{"not_simulated"});
 }
 
+TEST(SelectEstimate, OfAnEstimatorWhoseIntervalsHeldTooLittleIsUncalibratedUnlessItIsRefined) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.by_estimator.stddev = inferred.by_estimator.limit_stddev;
+  inferred.estimator_coverage_is_short = true;
+  EXPECT_EQ(listStatuses(inferred), Statuses{"uncalibrated"});
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+}
+
 TEST(SelectEstimate, OfARunWhoseIntervalsHeldTooLittleIsUncalibrated) {
   InferredMeasurement inferred = makeInferred();
   inferred.refined = makeRefined(RefinementStatus::kAccepted);

@@ -40,8 +40,43 @@ SessionOptions makeOptions(const InferArguments& arguments) {
                                  : PosteriorSource::kSimulator;
     options.posterior_draws = options.posterior_draws != 0 ? options.posterior_draws : kDefaultPosteriorDraws;
   }
+  if (!arguments.profile.empty()) {
+    options.profiles = true;
+    options.posterior_draws =
+        options.posterior_draws != 0 ? options.posterior_draws : SimulatorPosteriorOptions{}.draws;
+    options.posterior_from = options.posterior_from.value_or(PosteriorSource::kSimulator);
+    if (options.posterior_from == PosteriorSource::kSurrogate) {
+      throw ExperimentError("--profile is of the simulator: leave --posterior-from out");
+    }
+  }
   return options;
 }
+
+/// A file that rows are added to, if it is wanted.
+class RowsFile {
+ public:
+  /// path: "": not wanted. Throws std::runtime_error where it cannot be written.
+  RowsFile(std::string path, const std::string& header) : path_(std::move(path)) {
+    if (!path_.empty()) {
+      stream_.open(path_);
+      add(header);
+      flush();
+    }
+  }
+
+  bool isWanted() const { return !path_.empty(); }
+  void add(const std::string& rows) { stream_ << rows; }
+  /// Throws std::runtime_error where rows could not be written.
+  void flush() {
+    if (isWanted() && !stream_.flush()) {
+      throw std::runtime_error(path_ + ": cannot be written");
+    }
+  }
+
+ private:
+  const std::string path_;
+  std::ofstream stream_;
+};
 
 /// Infers one measurement after another and prints what comes out. A measurement that cannot be used is an
 /// error of its own.
@@ -57,18 +92,14 @@ class InferCommand {
         format_(chooseFormat(arguments)),
         history_(getModel().parameters),
         page_(arguments.page),
-        starts_(arguments.starts.begin(), arguments.starts.end()) {
+        starts_(arguments.starts.begin(), arguments.starts.end()),
+        draws_(arguments.draws, makeDrawsCsvHeader(collectUnknown(getModel()))),
+        profile_(arguments.profile, makeProfileCsvHeader(collectUnknown(getModel()))) {
     if (starts_.empty()) {
       starts_.emplace_back(std::nullopt);
     }
     if (format_ == Format::kCsv) {
       std::cout << makeInferenceCsvHeader(session_->refines(), session_->samplesPosteriors());
-    }
-    if (!arguments.draws.empty()) {
-      draws_file_ = arguments.draws;
-      draws_.emplace(draws_file_);
-      *draws_ << makeDrawsCsvHeader(collectUnknown(getModel()));
-      requireDraws();
     }
   }
 
@@ -98,10 +129,8 @@ class InferCommand {
   /// Throws std::runtime_error if a measurement could not be used.
   void finish() {
     printCourses();
-    if (draws_) {
-      draws_->flush();
-      requireDraws();
-    }
+    draws_.flush();
+    profile_.flush();
     if (errors_ > 0) {
       throw std::runtime_error(count_ == 1
                                    ? "the measurement could not be used"
@@ -147,12 +176,6 @@ class InferCommand {
     }
   }
 
-  void requireDraws() const {
-    if (!*draws_) {
-      throw std::runtime_error(draws_file_ + ": cannot be written");
-    }
-  }
-
   const ModelSpec& getModel() const { return source_.getExperiment().model; }
   /// recording: to be diagnosed as well; null: not.
   void print(const InferredMeasurement& inferred, const RecordedFeatures* recording) {
@@ -161,8 +184,11 @@ class InferCommand {
     if (format_ == Format::kTable || !page_.empty()) {  // a stream has no end
       history_.add(inferred);
     }
-    if (draws_) {
-      *draws_ << makeDrawsCsvRows(inferred);
+    if (draws_.isWanted()) {
+      draws_.add(makeDrawsCsvRows(inferred));
+    }
+    if (profile_.isWanted()) {
+      profile_.add(makeProfileCsvRows(inferred, collectUnknown(getModel())));
     }
     switch (format_) {
       case Format::kTable:
@@ -208,8 +234,7 @@ class InferCommand {
   InferHistory history_;
   const std::string page_;
   std::vector<std::optional<double>> starts_;
-  std::string draws_file_;
-  std::optional<std::ofstream> draws_;
+  RowsFile draws_, profile_;
   int count_ = 0, errors_ = 0;
 };
 
@@ -232,6 +257,11 @@ void keepFreedMemory() {
 
 void infer(const InferArguments& arguments) {
   keepFreedMemory();
+  const bool is_of_several =
+      arguments.segments || !arguments.trials.empty() || arguments.joint || arguments.windows;
+  if (is_of_several && !arguments.profile.empty()) {
+    throw ExperimentError("--profile is of one measurement at a time: leave it out, or infer each alone");
+  }
   if (arguments.segments) {
     inferInSegments(arguments);
     return;

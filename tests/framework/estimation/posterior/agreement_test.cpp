@@ -41,7 +41,7 @@ LinearTrials makeLinearTrials(const std::vector<double>& scales) {
           return std::sin(1.0 + 0.7 * static_cast<double>((i + 1) * (j + 1)) + static_cast<double>(k));
         });
     trials.jacobians.push_back(jacobian);
-    trials.parts.push_back({{0, 1, kShared + static_cast<Index>(k)}, jacobian.transpose() * jacobian});
+    trials.parts.push_back({{0, 1, kShared + static_cast<Index>(k)}, jacobian.transpose() * jacobian, {}});
   }
   return trials;
 }
@@ -55,7 +55,7 @@ double calcLeast(const MatrixXd& jacobian, const VectorXd& errors) {
 
 /// p-value of measurements with random errors, the second of a machine that differs by `shift`. What a trial
 /// of hardly any sensitivity could fit lies far outside the bounds: within them it fits nothing.
-double testOnce(const LinearTrials& trials, std::uint64_t seed, double shift) {
+double testOnce(LinearTrials trials, std::uint64_t seed, double shift) {
   constexpr double kInsensitive = 0.01;
   const auto u = static_cast<Index>(trials.problem.unknown.size());
   const RandomStream random(seed, RandomPurpose::kVerification);
@@ -68,6 +68,7 @@ double testOnce(const LinearTrials& trials, std::uint64_t seed, double shift) {
     VectorXd errors(jacobian.rows());
     random.drawNormals(k, 0, errors.data(), static_cast<std::size_t>(errors.size()));
     errors += (k == 1 ? shift : 0.0) * jacobian.col(0);
+    trials.parts[k].descent = jacobian.transpose() * errors;
     const bool fits = jacobian.cwiseAbs().maxCoeff() > kInsensitive;
     separate.push_back(fits ? calcLeast(jacobian, errors) : errors.squaredNorm());
     joint += errors.squaredNorm();
@@ -107,6 +108,20 @@ TEST(Agreement, ATrialThatDeterminesNothingContradictsNothing) {
     below += testOnce(trials, seed, 0.0) < 0.1 ? 1 : 0;
   }
   EXPECT_LE(below, 14);  // 6 are expected
+}
+
+TEST(Agreement, WhatATrialFitsFarFromTheJointEstimateContradictsLittle) {
+  // alone the second trial fits along a bent valley what its linear model does not say
+  LinearTrials trials = makeLinearTrials({40.0, 1e-3});
+  for (PartInformation& part : trials.parts) {
+    part.descent = VectorXd::Zero(3);
+  }
+  const auto test = [&](double excess) {
+    return testAgreement(20.0 + excess, {12.0, 8.0}, trials.parts, trials.problem, VectorXd::Zero(4), 1)
+        .p_value;
+  };
+  EXPECT_GT(test(5.0), 0.5);
+  EXPECT_LT(test(20.0), kAgreementLevel);  // chi-square of two degrees of freedom: e^-10
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "framework/estimation/posterior/profile_ends.hpp"
+#include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "tests/framework/estimation/posterior/surface.hpp"
 

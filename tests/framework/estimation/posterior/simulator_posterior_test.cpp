@@ -110,6 +110,27 @@ TEST(SimulatorPosterior, ReachesTheEndsOfASumWithTheDrawsThatInferTakes) {
   }
 }
 
+/// Errors that all measurements share are none of chance: 512 independent draws have 5 % of a standard
+/// deviation in the mean and 4 % in the standard deviation, whatever is measured.
+TEST(SimulatorPosterior, HasTheMomentsOfANormalPosteriorWithTheDrawsThatInferTakes) {
+  const MatrixXd matrix = MatrixXd::NullaryExpr(
+      30, 4, [](Index i, Index j) { return std::sin(1.0 + 0.7 * static_cast<double>((i + 1) * (j + 1))); });
+  constexpr double kNoise = 0.05;
+  Problem problem(
+      30, [=](const VectorXd& x) -> VectorXd { return matrix * x; }, testing::makeParameters(4, -2.0, 2.0),
+      kNoise);
+  const MatrixXd covariance = kNoise * kNoise * (matrix.transpose() * matrix).inverse();
+  const VectorXd stddev = covariance.diagonal().cwiseSqrt();
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const VectorXd features = problem.measure(VectorXd::Constant(4, 0.2), kNoise, seed);
+    const VectorXd mean = covariance * matrix.transpose() * features / (kNoise * kNoise);
+    const SimulatorPosterior posterior = sample(problem, features, SimulatorPosteriorOptions{}.draws);
+    ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+    EXPECT_LT((posterior.mean - mean).cwiseQuotient(stddev).cwiseAbs().maxCoeff(), 0.025);
+    EXPECT_LT((posterior.stddev.cwiseQuotient(stddev).array() - 1.0).abs().maxCoeff(), 0.025);
+  }
+}
+
 TEST(SimulatorPosterior, IsThatOfQuadratureAtABound) {
   const MatrixXd matrix = makeMatrix(10, 2);
   expectQuadrature([=](const VectorXd& x) -> VectorXd { return matrix * x; },
