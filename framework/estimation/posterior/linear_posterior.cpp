@@ -59,23 +59,68 @@ VectorXd calcLinearLosses(const MisfitSurface& surface, const Basin& basin, cons
          apart.transpose() * descent;
 }
 
+/// One chain of draws of the linear posterior, and what each weighs (log).
+class LinearChain {
+ public:
+  LinearChain(MisfitSurface& surface, const Basin& basin, std::uint64_t seed)
+      : surface_(surface),
+        basin_(basin),
+        numbers_(makeNumbers(RandomStream(seed, RandomPurpose::kPosterior))),
+        at_(basin.local.at) {}
+
+  void draw(int count) {
+    constexpr int kSteps = 50;  // a draw: those of a uniform prior in a corner hardly depend on each other
+    const MatrixXd points =
+        importance::sampleEllipticalSlices(makeLinear(surface_, basin_), at_, count, kSteps, numbers_);
+    VectorXd log_weights = surface_.calcLogPosteriors(points) + calcLinearLosses(surface_, basin_, points);
+    for (Index i = 0; i < count; ++i) {
+      log_weights[i] -= surface_.calcLogPrior(points.col(i));
+    }
+    at_ = points.rightCols(1);
+    const Index before = points_.cols();
+    points_.conservativeResize(points.rows(), before + count);
+    points_.rightCols(count) = points;
+    log_weights_.conservativeResize(before + count);
+    log_weights_.tail(count) = log_weights;
+  }
+
+  const VectorXd& getLogWeights() const { return log_weights_; }
+  importance::WeightedDraws weigh() const { return importance::weigh(points_, log_weights_); }
+
+ private:
+  MisfitSurface& surface_;
+  const Basin& basin_;
+  const importance::SliceNumbers numbers_;
+  VectorXd at_, log_weights_;
+  MatrixXd points_;
+};
+
 }  // namespace
 
-AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws, std::uint64_t seed) {
-  constexpr int kSteps = 50;  // a draw: those of a uniform prior in a corner hardly depend on each other
-  const importance::SliceNumbers numbers = makeNumbers(RandomStream(seed, RandomPurpose::kPosterior));
-  const MatrixXd points =
-      importance::sampleEllipticalSlices(makeLinear(surface, basin), basin.local.at, draws, kSteps, numbers);
-  VectorXd log_weights = surface.calcLogPosteriors(points) + calcLinearLosses(surface, basin, points);
-  for (Index i = 0; i < draws; ++i) {
-    log_weights[i] -= surface.calcLogPrior(points.col(i));
-  }
+AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws, int most_rounds,
+                               std::uint64_t seed) {
+  LinearChain chain(surface, basin, seed);
   AdaptiveDraws drawn;
-  drawn.draws = importance::weigh(points, log_weights);
-  drawn.effective_sample_size = importance::calcEffectiveSampleSize(drawn.draws);
+  bool goes_on = true;
+  while (goes_on) {
+    chain.draw(draws);
+    ++drawn.rounds;
+    drawn.draws = chain.weigh();
+    drawn.effective_sample_size = importance::calcEffectiveSampleSize(drawn.draws);
+    const double reached = drawn.effective_sample_size / drawn.rounds * most_rounds;
+    goes_on = drawn.rounds < most_rounds && drawn.effective_sample_size < importance::kSmallestSampleSize &&
+              reached >= importance::kSmallestSampleSize;
+  }
   drawn.pareto_shape = importance::calcParetoShape(drawn.draws);
-  drawn.rounds = 1;
   return drawn;
+}
+
+double calcNonlinearity(MisfitSurface& surface, const Basin& basin, std::uint64_t seed) {
+  constexpr int kDraws = 48;  // the variance is then known to a fifth
+  LinearChain chain(surface, basin, seed);
+  chain.draw(kDraws);
+  const Eigen::ArrayXd logs = chain.getLogWeights().array();
+  return logs.allFinite() ? (logs - logs.mean()).square().mean() : std::numeric_limits<double>::infinity();
 }
 
 bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins) {

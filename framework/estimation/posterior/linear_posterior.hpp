@@ -18,9 +18,16 @@ constexpr Eigen::Index kManyUnknown = 16;
 /// bounds as they are, so that what the measurement does not determine keeps its prior exactly
 /// (sampleEllipticalSlices, without a simulation). Each is weighted by its likelihood over the linear one:
 /// the effective sample size and the Pareto shape show where the response is too far from linear for that.
-/// Cost: one simulation a draw, whatever the number of parameters.
+/// Rounds of `draws` follow, as many as `most_rounds`, while the effective sample size is below
+/// kSmallestSampleSize and as many rounds may reach it. Cost: one simulation a draw, whatever the number of
+/// parameters.
 importance::AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws,
-                                           std::uint64_t seed);
+                                           int most_rounds, std::uint64_t seed);
+
+/// How far from linear the response is where that posterior has its mass: the variance of the logarithms of
+/// some draws' weights, infinite where one of them cannot be simulated. What is straight in the parameters is
+/// bent in their logarithms, and the other way about.
+double calcNonlinearity(MisfitSurface& surface, const Basin& basin, std::uint64_t seed);
 
 /// Whether the minima are one basin for that: the measurement does not keep them apart, so that they differ
 /// in what it leaves to the prior alone. Nothing keeps them apart that the first one's linear response says

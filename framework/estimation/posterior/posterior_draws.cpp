@@ -143,7 +143,9 @@ AdaptiveDraws drawPosterior(MisfitSurface& surface, Landscape& landscape, Index 
                             const PosteriorDrawOptions& options) {
   const bool has_many = kept > kManyUnknown;
   if (has_many || (surface.getDimensions() > kFewUnknown && areOneBasin(surface, landscape.basins))) {
-    AdaptiveDraws drawn = sampleLinearized(surface, landscape.basins.front(), options.draws, options.seed);
+    constexpr int kMostRounds = 4;  // where no mixture follows
+    AdaptiveDraws drawn = sampleLinearized(surface, landscape.basins.front(), options.draws,
+                                           has_many ? kMostRounds : 1, options.seed);
     const bool is_good = drawn.isReliable() && drawn.effective_sample_size >= kEnough * options.draws &&
                          drawn.pareto_shape <= importance::AdaptiveOptions().good_pareto_shape;
     if (has_many || is_good) {

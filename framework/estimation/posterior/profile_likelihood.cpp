@@ -122,8 +122,8 @@ Profile calcProfile(MisfitSurface& surface, const importance::WeightedDraws& dra
       profile.log_ratios[found++] = -0.5 * local.misfit;
     }
   }
-  profile.points.conservativeResize(u, found);
-  profile.log_ratios.conservativeResize(found);
+  profile.points = MatrixXd(profile.points.leftCols(found));
+  profile.log_ratios = VectorXd(profile.log_ratios.head(found));
   return profile;
 }
 

@@ -154,14 +154,37 @@ std::string findObstacle(const PosteriorProblem& problem, MisfitSurface& surface
   return sampling.drawn.findObstacle();
 }
 
-/// In the logarithms, or as findRidgeShape() says.
+std::vector<Index> listAll(const PosteriorProblem& problem) {
+  std::vector<Index> all(problem.unknown.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return all;
+}
+
+/// Whether the response is nearer to linear in the parameters as they are than in their logarithms.
+bool isStraighterPlain(const BasinSearch& found, ProblemSurface& whole, ProblemSurface& plain,
+                       std::uint64_t seed) {
+  const std::vector<Basin> basins = convertBasins(found.basins, whole.getCoordinates(), plain.upd());
+  return calcNonlinearity(plain.upd(), basins.front(), seed) <
+         calcNonlinearity(whole.upd(), found.basins.front(), seed);
+}
+
+/// In the logarithms, or as findRidgeShape() says; of many parameters in whichever they are straighter.
 Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                       const PosteriorDrawOptions& options) {
-  const RidgeShape shape = findRidgeShape(whole.upd(), found.basins.front());
-  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
+  RidgeShape shape = findRidgeShape(whole.upd(), found.basins.front());
   std::unique_ptr<ProblemSurface> straight;
-  if (!shape.plain.empty()) {
+  if (problem.drawn > kManyUnknown) {
+    shape.plain = listAll(problem);
     straight = std::make_unique<ProblemSurface>(problem, shape.plain);
+    if (!isStraighterPlain(found, whole, *straight, options.seed)) {
+      shape.plain.clear();
+      straight.reset();
+    }
+  } else if (!shape.plain.empty()) {
+    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
+  }
+  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
+  if (straight) {
     sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), straight->upd());
   }
   MisfitSurface& surface = straight ? straight->upd() : whole.upd();
@@ -175,8 +198,7 @@ Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found,
 Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
                      const PosteriorDrawOptions& options) {
   Sampling sampling;
-  sampling.plain.resize(problem.unknown.size());
-  std::iota(sampling.plain.begin(), sampling.plain.end(), Index{0});
+  sampling.plain = listAll(problem);
   ProblemSurface plain(problem, sampling.plain);
   MisfitSurface& surface = plain.upd();
   sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
