@@ -12,12 +12,21 @@
 
 namespace twinmap {
 
+/// How samples are made fewer.
+enum class SampleReduction { kAutomatic };
+
+template <>
+struct EnumNames<SampleReduction> {
+  static constexpr EnumName<SampleReduction> values[] = {{"automatic", SampleReduction::kAutomatic}};
+};
+
 /// Equidistant samples of outputs.
 struct SamplesFeatureSpec {
   std::vector<Name> outputs;
   double start = 0.0;
   double interval = 0.0;
   int count = 0;
+  std::optional<SampleReduction> reduce{};  ///< for a run, to what tells about the parameters
 };
 
 template <class Fields>
@@ -26,6 +35,7 @@ void describe(Fields& f, SamplesFeatureSpec& s) {
   f.required("start", s.start, "time of the first sample; s", kNonNegative);
   f.required("interval", s.interval, "time between samples; s", kSampleInterval);
   f.required("count", s.count, "samples of each output", kSampleCount);
+  f.optional("reduce", s.reduce, "automatic: a run keeps what tells about the parameters (default: all)");
   f.rule(!s.outputs.empty(), "must name at least one of outputs");
 }
 

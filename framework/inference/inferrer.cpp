@@ -2,8 +2,10 @@
 
 #include <stdexcept>
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/derived_values.hpp"
+#include "framework/store/reduction_group.hpp"
 
 namespace twinmap {
 
@@ -26,8 +28,22 @@ bool isCalibrated(const Estimator& map, const TrustModel* trust) {
 
 Inferrer::Inferrer(const fs::path& run_or_maps) : Inferrer(readTrainedFile(findMaps(run_or_maps))) {}
 
+namespace {
+
+MeasurementReader makeReader(const TrainedFile& loaded) {
+  ExperimentSpec experiment = readResolved(loaded.experiment);
+  if (!loaded.reduction) {
+    return MeasurementReader(std::move(experiment));
+  }
+  auto reduction = std::make_shared<ResponseReduction>(*loaded.reduction);
+  placeRows(experiment, makeLayout(experiment), *reduction);
+  return {std::move(experiment), std::move(reduction)};
+}
+
+}  // namespace
+
 Inferrer::Inferrer(TrainedFile loaded)
-    : reader_(readResolved(loaded.experiment)),
+    : reader_(makeReader(loaded)),
       map_(std::move(loaded.model.map)),
       trust_(std::move(loaded.model.trust)),
       quantities_(makeDerivedQuantities(reader_.getExperiment())),

@@ -184,6 +184,9 @@ PosteriorEstimate SimulatorRefiner::samplePosterior(const VectorXd& features, co
   if (!sampled.fit->isSimulated() || sampled.fit->isPlausible()) {
     return sampled;
   }
+  if (!readsOutputs()) {
+    return sampled;
+  }
   for (const NoiseHypothesis& noise : listNoise(stated, features, known, sampled.fit->best)) {
     PosteriorEstimate other = sampleUnder(noise, features, known, sampled.fit->best, options);
     if (other.isReliable() && explains(*other.fit, sampled.fit->residual.size())) {
@@ -254,6 +257,15 @@ PosteriorEstimate SimulatorRefiner::makeEstimate(const MeasuredTrial& trial,
       makePosteriorEstimate(posterior, getUnknown(), static_cast<Index>(model_.parameters.size()), infos);
   nameNoise(*made.fit);
   return made;
+}
+
+bool SimulatorRefiner::readsOutputs() const {
+  const std::vector<OutputSpec>& outputs = model_.outputs;
+  const std::vector<std::string>& read = simulator_->getLayout().output_names;
+  return std::all_of(read.begin(), read.end(), [&](const std::string& name) {
+    return std::any_of(outputs.begin(), outputs.end(),
+                       [&](const OutputSpec& output) { return output.name.text == name; });
+  });
 }
 
 void SimulatorRefiner::nameNoise(SimulatorFit& fit) const {

@@ -118,6 +118,8 @@ class SimulatorRefiner {
   Eigen::MatrixXd listStarts(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
                              const Eigen::VectorXd& known, const TrustModel* trust) const;
 
+  /// Whether rows are outputs of the model, which have sensors with faults, not what these are reduced to.
+  bool readsOutputs() const;
   void nameNoise(SimulatorFit& fit) const;
   std::vector<NoiseHypothesis> listNoise(const NoiseHypothesis& stated, const Eigen::VectorXd& features,
                                          const Eigen::VectorXd& known, const Eigen::VectorXd& best) const;

@@ -7,6 +7,7 @@
 #include "framework/estimation/trained/estimator_kinds.hpp"
 #include "framework/estimation/trained/trust_file.hpp"
 #include "framework/store/parameters_group.hpp"
+#include "framework/store/reduction_group.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,6 +19,7 @@ constexpr const char* kFeatures = "/features/name";
 constexpr const char* kExperiment = "/experiment";
 constexpr const char* kMap = "/map";
 constexpr const char* kTrust = "/trust";
+constexpr const char* kReduction = "/reduction";
 
 }  // namespace
 
@@ -33,6 +35,9 @@ void writeTrainedFile(const std::filesystem::path& path, const TrainedFile& stor
     file.writeAttribute(kMap, "kind", map.getKind());
     if (stored.model.trust) {
       writeTrustModel(file, kTrust, *stored.model.trust, map.findForward().get());
+    }
+    if (stored.reduction) {
+      writeReduction(file, kReduction, *stored.reduction);
     }
     file.write(kExperiment, std::vector<std::string>{stored.experiment});
     file.close();
@@ -54,6 +59,9 @@ TrainedFile readTrainedFile(const std::filesystem::path& path, Hdf5Seal seal) {
     if (stored.model.trust->unknown < stored.model.map->getResidualCorrelation().rows()) {
       throw std::runtime_error(path.string() + ": " + kTrust + " has fewer parameters than " + kMap);
     }
+  }
+  if (file.contains(std::string(kReduction) + "/center")) {
+    stored.reduction = std::make_shared<const ResponseReduction>(readReduction(file, kReduction));
   }
   const std::vector<std::string> experiment = file.readTexts(kExperiment);
   if (experiment.size() != 1) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "framework/base/hdf5/hdf5_file.hpp"
+#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
@@ -16,7 +18,8 @@ struct TrainedFile {
   std::vector<ParameterSpec> inputs;       ///< known, with a measurement
   std::vector<std::string> feature_names;  ///< d
   OnlineModel model;
-  std::string experiment;  ///< resolved.yaml's text
+  std::string experiment;                                ///< resolved.yaml's text
+  std::shared_ptr<const ResponseReduction> reduction{};  ///< null where all samples are features
 };
 
 /// Writes maps.h5 (docs/reference/files.md), sealed. Equal content gives equal bytes.

@@ -33,6 +33,8 @@ class Hdf5Writer {
   void write(const std::string& dataset, const double* values, const std::vector<std::size_t>& shape);
   /// d x n -> (n, d).
   void writeSamples(const std::string& dataset, const Eigen::MatrixXd& columns);
+  /// The same of single precision.
+  void writeSingle(const std::string& dataset, const Eigen::MatrixXf& columns);
   /// A dataset (n, d) that is filled part by part; what is not written is 0.
   void createSamples(const std::string& dataset, Eigen::Index samples, Eigen::Index numbers);
   /// Columns (d x k) of it, from sample `first` on.

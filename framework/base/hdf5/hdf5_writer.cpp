@@ -83,6 +83,14 @@ void Hdf5Writer::writeSamples(const std::string& dataset, const Eigen::MatrixXd&
         {static_cast<std::size_t>(columns.cols()), static_cast<std::size_t>(columns.rows())});
 }
 
+void Hdf5Writer::writeSingle(const std::string& dataset, const Eigen::MatrixXf& columns) {
+  const std::string what = path_ + ": " + dataset + " cannot be written";
+  const Hdf5Handle space =
+      makeSpace({static_cast<std::size_t>(columns.cols()), static_cast<std::size_t>(columns.rows())});
+  const Hdf5Handle data(createDataset(dataset, H5T_IEEE_F32LE, space.get()), H5Dclose, what);
+  requireHdf5(H5Dwrite(data.get(), H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, columns.data()), what);
+}
+
 void Hdf5Writer::createSamples(const std::string& dataset, Eigen::Index samples, Eigen::Index numbers) {
   const Hdf5Handle space = makeSpace({static_cast<std::size_t>(samples), static_cast<std::size_t>(numbers)});
   const Hdf5Handle data(createDataset(dataset, H5T_IEEE_F64LE, space.get()), H5Dclose,

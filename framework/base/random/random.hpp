@@ -37,6 +37,7 @@ enum class RandomPurpose : std::uint64_t {
   kPriorPoints = 31,     // test points in place of those that bounds cut off
   kCourse = 32,          // errors that a change over measurements is compared with
   kPosteriorWalk = 33,   // chains through valleys that importance sampling does not cover
+  kReduction = 34,       // points and columns that samples are reduced by
   kPriorTraining = 40,   // training points in place of those that bounds cut off
   kPriorPool = 41,       // and points of a surrogate's pool
 };

@@ -61,6 +61,34 @@ void checkUnknown(const OutputNoiseSpec& spec, const std::vector<FeatureSpec>& f
   }
 }
 
+/// What is reduced is weighed by its noise, and that of scores is taken to be independent.
+void checkReduced(const ExperimentSpec& experiment) {
+  const NoiseSpec& noise = experiment.noise;
+  bool any = false, all = true;
+  for (const FeatureSpec& feature : experiment.features) {
+    const auto* samples = std::get_if<SamplesFeatureSpec>(&feature);
+    const bool reduced = samples != nullptr && samples->reduce;
+    any = any || reduced;
+    all = all && reduced;
+  }
+  const auto reject = [&](const std::string& rule) {
+    throw ExperimentError({experiment.name.where.file, 0, 0, "features"}, "", rule);
+  };
+  if (any && !all) {
+    reject("are reduced in part; give 'reduce: automatic' to all of them, which must be samples");
+  }
+  if (any && !noise.correlation.empty()) {
+    reject("are reduced, but noise.correlation is given; leave 'reduce' or 'correlation' out");
+  }
+  for (const Name& output : any ? collectOutputs(experiment.features) : std::vector<Name>{}) {
+    for (const OutputNoiseSpec& spec : noise.stddev) {
+      if (spec.name.text == output.text && noise.scale * spec.stddev <= 0.0) {
+        reject("are reduced, which needs noise on each: noise.stddev of '" + output.text + "' is 0");
+      }
+    }
+  }
+}
+
 }  // namespace
 
 void requireStatedNoise(const ExperimentSpec& experiment) {
@@ -88,6 +116,7 @@ void checkNoise(const ExperimentSpec& experiment) {
     requireKnown(correlation.name, outputs, "an output");
     checkCorrelation(correlation, experiment.features);
   }
+  checkReduced(experiment);
   if (collectOutputs(experiment.features).empty()) {
     return;
   }

@@ -17,6 +17,8 @@
 #include "framework/data/measurement/recording/recording.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
+#include "framework/data/reduction/reduced_simulator.hpp"
+#include "framework/models/make_simulator.hpp"
 
 namespace twinmap {
 
@@ -69,8 +71,24 @@ MeasurementReader::MeasurementReader(ExperimentSpec experiment)
       extractor_(makeExtractor(experiment_, layout_)),
       linear_(extractor_.makeLinearForm()) {}
 
+MeasurementReader::MeasurementReader(ExperimentSpec whole, std::shared_ptr<const ResponseReduction> reduction)
+    : experiment_(reduceExperiment(whole, *reduction)),
+      reduction_(std::move(reduction)),
+      whole_layout_(makeLayout(whole)),
+      layout_(reduction_->layout),
+      sample_interval_(findSampleInterval(whole.features)),
+      extractor_(experiment_.features, layout_),
+      linear_(extractor_.makeLinearForm()) {
+  whole_ = std::move(whole);
+}
+
+std::unique_ptr<Simulator> MeasurementReader::makeReducedSimulator() const {
+  return std::make_unique<ReducedSimulator>(makeTrustedSimulator(whole_.model, whole_layout_.times),
+                                            reduction_);
+}
+
 std::vector<std::string> MeasurementReader::listColumns() const {
-  std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, layout_.output_names);
+  std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, getRecorded().output_names);
   const std::vector<std::string> excitation = listExcitationColumns(experiment_);
   names.insert(names.end(), excitation.begin(), excitation.end());
   const std::vector<std::string> lines =
@@ -99,7 +117,8 @@ std::vector<double> MeasurementReader::listWindows(const Table& table, std::opti
   for (const double time : readUnorderedTimes(table, makeTimeBase(experiment_.measurement, 0.0), rows)) {
     last = std::isfinite(time) ? std::max(last, time) : last;
   }
-  const double duration = layout_.times.size() > 0 ? layout_.times[layout_.times.size() - 1] : 0.0;
+  const Eigen::VectorXd& times = getRecorded().times;
+  const double duration = times.size() > 0 ? times[times.size() - 1] : 0.0;
   const double slack = 1e-6 * length;  // as times are compared when they are read
   std::vector<double> starts;
   for (double i = 0.0; first + i * length + duration <= last + slack; i += 1.0) {
@@ -118,7 +137,7 @@ void MeasurementReader::requireExcitation(const Table& table, std::optional<doub
 }
 
 void MeasurementReader::warnOfJumps(const Table& table) const {
-  for (const std::string& jumps : describeJumps(table, experiment_.measurement, layout_)) {
+  for (const std::string& jumps : describeJumps(table, experiment_.measurement, getRecorded())) {
     logWarning(jumps);
   }
 }
@@ -127,17 +146,19 @@ Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optiona
   warnOfJumps(table);
   const MeasurementSpec& spec = experiment_.measurement;
   const double zero = getStart(table, start);
-  if (hasOwnClocks(spec) || layout_.modes > 0) {
-    return readWhole(table, zero);
+  const ResponseLayout& recorded = getRecorded();
+  if (hasOwnClocks(spec) || recorded.modes > 0) {
+    return reduction_ ? reduction_->reduceMeasured(readWhole(table, zero)) : readWhole(table, zero);
   }
-  const Measurement measurement = readMeasurement(table, spec, layout_, zero);
-  requireUnclipped(measurement, spec, layout_);
-  return resample(measurement, layout_, sample_interval_);
+  const Measurement measurement = readMeasurement(table, spec, recorded, zero);
+  requireUnclipped(measurement, spec, recorded);
+  const Eigen::VectorXd response = resample(measurement, recorded, sample_interval_);
+  return reduction_ ? reduction_->reduceMeasured(response) : response;
 }
 
 Eigen::VectorXd MeasurementReader::readWhole(const Table& table, double start) const {
   const AvailableResponse available =
-      readAvailable(table, experiment_.measurement, layout_, start, sample_interval_);
+      readAvailable(table, experiment_.measurement, getRecorded(), start, sample_interval_);
   if (!available.response.allFinite()) {
     throw MeasurementError(
         fmt::format("{}: a trained map needs every sample; missing or clipped: {}; inference from the "
@@ -186,7 +207,10 @@ AvailableFeatures MeasurementReader::readSamples(const Table& table, std::option
   requireExcitation(table, start);
   warnOfJumps(table);
   AvailableResponse response =
-      readAvailable(table, experiment_.measurement, layout_, getStart(table, start), sample_interval_);
+      readAvailable(table, experiment_.measurement, getRecorded(), getStart(table, start), sample_interval_);
+  if (reduction_) {
+    return reduce(std::move(response), table.source);
+  }
   AvailableFeatures found{extractor_.extract(response.response),
                           {},
                           {},
@@ -205,25 +229,38 @@ AvailableFeatures MeasurementReader::readSamples(const Table& table, std::option
   return found;
 }
 
+AvailableFeatures MeasurementReader::reduce(AvailableResponse response, const std::string& source) const {
+  if (response.missing > 0 || !response.clipped.empty()) {
+    throw MeasurementError(
+        fmt::format("{}: a run of reduced samples needs every sample; missing or clipped: {}; inference from "
+                    "the experiment file can do without (twinmap infer FILE.yaml MEASUREMENT)",
+                    source, fmt::join(response.remarks, "; ")));
+  }
+  requireNoneStated({response.stddev, {}}, source);
+  const Eigen::VectorXd reduced = reduction_->reduceMeasured(response.response);
+  return {extractor_.extract(reduced), {}, {}, std::move(response.remarks), reduced, {}};
+}
+
 void MeasurementReader::warnOfInterpolation(const Table& table, std::optional<double> start) const {
   constexpr double kMatters = 0.1;  // of the noise: of a hundred samples a standard deviation of a parameter
-  if (layout_.times.size() == 0 || isFrequencyResponse(table, linear_.getInfos())) {
+  const ExperimentSpec& experiment = reduction_ ? whole_ : experiment_;
+  const ResponseLayout& layout = getRecorded();
+  if (layout.times.size() == 0 || isFrequencyResponse(table, linear_.getInfos())) {
     return;
   }
-  RecordedColumns recording(table, experiment_.measurement, getStart(table, start));
-  for (std::size_t o = 0; o < layout_.output_names.size(); ++o) {
-    const std::string& name = layout_.output_names[o];
-    const auto& noise = experiment_.noise.stddev;
+  RecordedColumns recording(table, experiment.measurement, getStart(table, start));
+  for (std::size_t o = 0; o < layout.output_names.size(); ++o) {
+    const std::string& name = layout.output_names[o];
+    const auto& noise = experiment.noise.stddev;
     const auto stated = std::find_if(noise.begin(), noise.end(),
                                      [&](const OutputNoiseSpec& spec) { return spec.name.text == name; });
     if (stated == noise.end() || stated->stddev.unknown) {
       continue;
     }
-    const double stddev = experiment_.noise.scale * stated->stddev;
-    const Samples samples =
-        twinmap::readSamples(recording.getRows(name), experiment_.measurement, layout_, o);
+    const double stddev = experiment.noise.scale * stated->stddev;
+    const Samples samples = twinmap::readSamples(recording.getRows(name), experiment.measurement, layout, o);
     const double error = calcInterpolationError(samples.times, samples.values,
-                                                collectTimesOf(name, experiment_.features), stddev);
+                                                collectTimesOf(name, experiment.features), stddev);
     if (stddev > 0.0 && error > kMatters * stddev) {
       logWarning(
           fmt::format("{}: features of {} lie between its samples, where the cubic errs by {} of its noise; "
@@ -236,7 +273,7 @@ void MeasurementReader::warnOfInterpolation(const Table& table, std::optional<do
 
 std::optional<ExperimentSpec> MeasurementReader::followTimes(const Table& table,
                                                              std::optional<double> start) const {
-  return followRecordedTimes(experiment_, layout_, table, getStart(table, start));
+  return reduction_ ? std::nullopt : followRecordedTimes(experiment_, layout_, table, getStart(table, start));
 }
 
 Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optional<double> start) const {

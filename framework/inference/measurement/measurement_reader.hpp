@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,8 +10,10 @@
 #include "framework/data/measurement/available_response.hpp"
 #include "framework/data/measurement/table.hpp"
 #include "framework/data/noise/stated_noise.hpp"
+#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
+#include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
 
@@ -42,10 +45,17 @@ void requireNoneStated(const StatedNoise& stated, const std::string& source);
 class MeasurementReader {
  public:
   explicit MeasurementReader(ExperimentSpec experiment);
+  /// Of a run that reduced the samples of the experiment: experiment, layout, responses and features are then
+  /// those of what they are reduced to, of which none may be missing.
+  MeasurementReader(ExperimentSpec whole, std::shared_ptr<const ResponseReduction> reduction);
 
   const ExperimentSpec& getExperiment() const { return experiment_; }
   const ResponseLayout& getLayout() const { return layout_; }
   const FeatureExtractor& getExtractor() const { return extractor_; }
+
+  /// Null where all samples are looked at; the simulator of the model's responses at its times.
+  const ResponseReduction* findReduction() const { return reduction_.get(); }
+  std::unique_ptr<Simulator> makeReducedSimulator() const;
 
   /// The columns that a table of a measurement must have, and those that it may have, for readTable().
   std::vector<std::string> listColumns() const;
@@ -81,6 +91,9 @@ class MeasurementReader {
   Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;
 
  private:
+  /// What a recording must have samples of.
+  const ResponseLayout& getRecorded() const { return reduction_ ? whole_layout_ : layout_; }
+  AvailableFeatures reduce(AvailableResponse response, const std::string& source) const;
   void warnOfJumps(const Table& table) const;
   /// A response of columns with clocks of their own, none missing.
   Eigen::VectorXd readWhole(const Table& table, double start) const;
@@ -90,6 +103,9 @@ class MeasurementReader {
   AvailableFeatures readLines(const Table& table) const;
 
   ExperimentSpec experiment_;
+  std::shared_ptr<const ResponseReduction> reduction_;
+  ExperimentSpec whole_;         // of what is reduced
+  ResponseLayout whole_layout_;  // likewise
   ResponseLayout layout_;
   std::optional<double> sample_interval_;
   FeatureExtractor extractor_;

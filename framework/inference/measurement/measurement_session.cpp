@@ -35,7 +35,11 @@ MeasurementSession::MeasurementSession(const Inferrer& inferrer, const SessionOp
   const ExperimentSpec& experiment = inferrer.getExperiment();
   const bool may_refine = options.refine.value_or(experiment.refine != RefineMode::kNever);
   if (may_refine || options.posterior_draws != 0) {
-    simulator_.emplace(experiment, inferrer.getLayout());
+    if (inferrer.getReader().findReduction() != nullptr) {
+      simulator_.emplace(experiment, inferrer.getLayout(), inferrer.getReader().makeReducedSimulator());
+    } else {
+      simulator_.emplace(experiment, inferrer.getLayout());
+    }
     refines_ = may_refine && (options.refine || simulator_->isWanted());
   }
   samples_where_needed_ =
@@ -62,6 +66,13 @@ void MeasurementSession::choosePosterior(const SessionOptions& options) {
 
 InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<double> start,
                                               const Eigen::VectorXd& known) {
+  if (const ResponseReduction* reduction = getReader().findReduction()) {
+    const AvailableFeatures found = getReader().readAvailableFeatures(table, start);
+    getReader().warnOfInterpolation(table, start);
+    InferredMeasurement inferred = inferResponse(table, start, found.response, found.features, known);
+    inferred.remarks.push_back(reduction->describe(inferrer_.getExperiment().model.parameters));
+    return inferred;
+  }
   if (!samplesByNeed()) {
     return MeasurementInference::infer(table, start, known);
   }
@@ -101,7 +112,8 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
 
 std::string MeasurementSession::findFault(const Eigen::VectorXd& response, const Eigen::VectorXd& known,
                                           const InferredMeasurement& inferred) {
-  if (!inferred.trust || inferred.trust->statuses.front() != TrustStatus::kModelMismatch) {
+  const bool is_reduced = getReader().findReduction() != nullptr;  // scores are no outputs of a sensor
+  if (is_reduced || !inferred.trust || inferred.trust->statuses.front() != TrustStatus::kModelMismatch) {
     return "";
   }
   // what the surrogate leaves, also where a refinement has judged the measurement anew; without some

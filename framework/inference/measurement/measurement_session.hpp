@@ -47,7 +47,8 @@ class MeasurementSession final : public MeasurementInference {
   bool refines() const override { return refines_; }
   bool samplesPosteriors() const override { return sampler_.has_value() || samples_always_; }
   MissingCells getMissingCells() const override {
-    return samplesByNeed() ? MissingCells::kKeep : MissingCells::kRefuse;
+    return samplesByNeed() || getReader().findReduction() != nullptr ? MissingCells::kKeep
+                                                                     : MissingCells::kRefuse;
   }
 
   InferredMeasurement infer(const Table& table, std::optional<double> start,

@@ -10,7 +10,9 @@
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/features/experiment_features.hpp"
+#include "framework/data/reduction/reduced_simulator.hpp"
 #include "framework/data/reduction/selections.hpp"
+#include "framework/data/sensitivity/fit_reduction.hpp"
 #include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -48,16 +50,42 @@ struct OwnStores {
 };
 
 OwnStores openOwnStores(const ExperimentSpec& experiment, const Simulator& simulator,
-                        const RunOptions& options) {
+                        const RunOptions& options, const ResponseReduction* reduction) {
   if (options.samples != nullptr) {
     return {};
   }
-  const fs::path root = getStoreRoot(options.folder, options.store);
+  fs::path root = getStoreRoot(options.folder, options.store);
+  if (reduction != nullptr) {  // what other directions make of the same responses lies elsewhere
+    root /= fmt::format("reduced-{:016x}", reduction->calcDigest());
+  }
   OwnStores stores{openStore(experiment.model, simulator.getLayout(), root), nullptr};
   if (!simulator.hasDerivatives() && listDerivativePoints(experiment).cols() > 0) {
     stores.stencils = openStencilStore(experiment.model, simulator.getLayout(), root);
   }
   return stores;
+}
+
+/// What is looked at of an experiment, by its simulator.
+struct Looked {
+  ExperimentSpec experiment;  ///< reduceExperiment() where samples are reduced
+  std::unique_ptr<Simulator> simulator;
+  std::shared_ptr<const ResponseReduction> reduction;  ///< null where they are not
+};
+
+Looked lookAt(const ExperimentSpec& experiment, const RunOptions& options, const RunControl& control) {
+  if (options.samples != nullptr) {
+    requireAllSamples(experiment, "a run that shares its samples with others");
+  }
+  std::unique_ptr<Simulator> whole =
+      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
+  logInfo("solver: " + whole->describeEngine());
+  if (!isReduced(experiment)) {
+    return {experiment, std::move(whole), nullptr};
+  }
+  auto reduction = std::make_shared<const ResponseReduction>(fitReduction(*whole, experiment, control));
+  logInfo(reduction->describe(experiment.model.parameters));
+  return {reduceExperiment(experiment, *reduction),
+          std::make_unique<ReducedSimulator>(std::move(whole), reduction), reduction};
 }
 
 /// Takes the folder over for the experiment, or throws.
@@ -112,7 +140,7 @@ Samples simulateSamples(const Study& study) {
 StageNotes writeTrustPower(const Study& study, const PreparedData& data, const OnlineModel& online) {
   StageNotes notes;
   throwIfCancelled(study.control);
-  if (!online.trust) {
+  if (!online.trust || study.reduced != nullptr) {  // changed models have no reduced simulator
     return notes;
   }
   const auto changes = timeStage("what the goodness-of-fit test would find", notes,
@@ -164,6 +192,13 @@ TrainedMap trainOrTake(const Study& study, const PreparedData& data, SampleChoic
                          : trainChosenMap(study, data);
 }
 
+/// What reducing the samples loses.
+void noteReduction(const Study& study, StageNotes& notes) {
+  if (study.reduced != nullptr) {
+    notes.warn({Severity::kInfo, study.reduced->reduction->describe(study.experiment.model.parameters)});
+  }
+}
+
 /// The stages of a run, one after the other.
 RunSummary runStages(const Study& study, SampleChoice choice) {
   Samples samples = simulateSamples(study);
@@ -172,6 +207,7 @@ RunSummary runStages(const Study& study, SampleChoice choice) {
   summary.failures = std::move(samples.failures);
   summary.reused_samples = samples.sets.reused - choice.simulated;
   summary.notes.append(choice.notes);
+  noteReduction(study, summary.notes);
   summary.notes.append(samples.sets.notes);
 
   const PreparedData data =
@@ -203,6 +239,7 @@ RunSummary runStagesWithoutMap(const Study& study) {
   summary.training.nlml.assign(summary.parameters.size(), std::numeric_limits<double>::quiet_NaN());
   summary.failures = std::move(samples.failures);
   summary.reused_samples = samples.sets.reused;
+  noteReduction(study, summary.notes);
   summary.notes.append(samples.sets.notes);
 
   PreparedData data = prepareData(study, std::move(samples.sets));
@@ -239,28 +276,27 @@ RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options,
   const ExperimentSpec experiment = options.samples ? given : followNoise(given);  // a sweep has done so
   beginFolder(experiment, options);
 
-  const std::unique_ptr<Simulator> made =
-      makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
-  const Simulator& simulator = *made;
-  logInfo("solver: " + simulator.describeEngine());
+  Looked looked = lookAt(experiment, options, control);
+  const Simulator& simulator = *looked.simulator;
   if (options.samples == nullptr) {
     warnOfIneffective(experiment.model, simulator);
-    logFiniteDifferenceSteps(experiment, *made);
+    logFiniteDifferenceSteps(experiment, *looked.simulator);
   }
-  const FeatureExtractor extractor = makeExtractor(experiment, simulator.getLayout());
-  checkTransformOf(extractor.getInfos(), experiment.transform);
-  const OwnStores stores = openOwnStores(experiment, simulator, options);
+  const ExperimentSpec& seen = looked.experiment;
+  const FeatureExtractor extractor = makeExtractor(seen, simulator.getLayout());
+  checkTransformOf(extractor.getInfos(), seen.transform);
+  const OwnStores stores = openOwnStores(seen, simulator, options, looked.reduction.get());
   const SampleSource source =
       options.samples ? *options.samples : SampleSource{simulator, *stores.samples, stores.stencils.get()};
 
-  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, simulator.getLayout()),
-                           experiment.seed);
-  const Study asked{experiment, simulator, extractor, noise, &source, options.folder, control};
+  const FeatureNoise noise(extractor, ResponseNoise(seen.noise, simulator.getLayout()), seen.seed);
+  const ReducedStudy reduced{experiment, looked.reduction};
+  const Study asked{seen,    simulator,      extractor, noise,
+                    &source, options.folder, control,   looked.reduction ? &reduced : nullptr};
   SampleChoice choice = chooseSamples(asked, options);
-  const bool has_map = !experiment.inverse_map.isNone();
-  const ExperimentSpec chosen = has_map && experiment.design.train.samples.automatic
-                                    ? takeTrainingSamples(experiment, choice.samples)
-                                    : experiment;
+  const bool has_map = !seen.inverse_map.isNone();
+  const ExperimentSpec chosen =
+      has_map && seen.design.train.samples.automatic ? takeTrainingSamples(seen, choice.samples) : seen;
   RunSummary run = has_map ? runStages(asked.with(chosen), std::move(choice)) : runStagesWithoutMap(asked);
   throwIfCancelled(control);
   run.gates = writeFolder(experiment, options, control.threads, run);
@@ -268,6 +304,7 @@ RunSummary runExperiment(const ExperimentSpec& given, const RunOptions& options,
 }
 
 void runFeatures(const ExperimentSpec& experiment, const RunOptions& options, const RunControl& control) {
+  requireAllSamples(experiment, "--features-only");
   if (experiment.design.train.samples.automatic) {
     throw ExperimentError(
         "--features-only needs a number of training samples, which is chosen by training: set "

@@ -166,6 +166,12 @@ InferredMeasurement inferFrom(const Inferrer& inferrer, const Table& table, cons
 }  // namespace
 
 Replay replay(const Inferrer& inferrer, const ReplayOptions& options) {
+  if (inferrer.getReader().findReduction() != nullptr) {
+    throw ExperimentError(
+        "a run of reduced samples cannot be replayed; infer from the experiment file, which needs no run, "
+        "and "
+        "simulate there");
+  }
   const Table table = readWindow(inferrer, options.measurement);
   const Window window(inferrer, table, options.measurement.start);
   Replay replay;

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "framework/data/features/feature_extractor.hpp"
+#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/data/sensitivity/stencil_simulator.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/estimation/network/train_network_map.hpp"
@@ -46,10 +47,25 @@ double countSearched(const ExperimentSpec& experiment) {
              : double(samples) * countSearchedReplicates(Eigen::Index(samples) * replicates, replicates);
 }
 
-double countRows(const ExperimentSpec& experiment) {
+/// Numbers that the windows of reduced samples become at most: 24 scores and two sums each (fitReduction).
+constexpr double kOfWindow = 26.0;
+
+double countRecordedRows(const ExperimentSpec& experiment) {
   return static_cast<double>(collectTimes(experiment.features).size()) *
              static_cast<double>(experiment.model.outputs.size()) +
          2.0 * countModes(experiment.features) + 1.0;
+}
+
+double countRows(const ExperimentSpec& experiment) {
+  const double samples = countRecordedRows(experiment);
+  return isReduced(experiment) ? kOfWindow * countReducedWindows(samples) : samples;
+}
+
+/// Of reducing: the sketch and the directions, the points whose sensitivities are added at a time, and the
+/// responses of each thread with derivatives.
+double countReductionNumbers(const ExperimentSpec& experiment, int threads) {
+  constexpr double kOfSample = 64.0, kAtOnce = 40e6;  // twice, for the solver holds them too
+  return isReduced(experiment) ? kOfSample * countRecordedRows(experiment) + kAtOnce * threads : 0.0;
 }
 
 double countFeaturesOf(const SamplesFeatureSpec& samples) {
@@ -71,6 +87,9 @@ double countFeaturesOf(const Lines& lines) {
 
 double countFeatures(const ExperimentSpec& experiment) {
   double count = 0.0;
+  if (isReduced(experiment)) {
+    return countRows(experiment);
+  }
   for (const FeatureSpec& feature : experiment.features) {
     count += std::visit([](const auto& kind) { return countFeaturesOf(kind); }, feature);
   }
@@ -220,7 +239,8 @@ std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
 
 CaseCost calcCaseCost(const ExperimentSpec& experiment, int threads) {
   constexpr double kCopies = 10.0, kLimitCopies = 1.5, kPosteriorCopies = 3.0;
-  double numbers = countMapNumbers(experiment, threads) + countFeatureNumbers(experiment);
+  double numbers = countMapNumbers(experiment, threads) + countFeatureNumbers(experiment) +
+                   countReductionNumbers(experiment, threads);
   numbers += kCopies * countRows(experiment) * (countColumns(experiment) + experiment.design.test.samples);
   if (experiment.evaluation.limit) {
     numbers += kLimitCopies * countRows(experiment) *

@@ -244,6 +244,7 @@ class Sweep {
 SweepResult runSweep(const YamlNode& root, const SweepOptions& options, const RunControl& control) {
   std::vector<SweepCase> cases = expandCasesWithSignals(root);
   for (const SweepCase& one : cases) {
+    requireAllSamples(one.experiment, "a sweep, whose cases share their simulations,");
     requireMemory(one.experiment, 1, options.most_memory);
   }
   makeFolders(options.folder);

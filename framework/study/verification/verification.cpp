@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void verifyPart(const ExperimentSpec& experiment, const VerifyOptions& options, Verification& verification) {
+  requireAllSamples(experiment, "a verification of some samples ('twinmap verify' without --all)");
   const std::unique_ptr<Simulator> made =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));
   const Simulator& simulator = *made;

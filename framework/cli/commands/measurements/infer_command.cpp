@@ -146,7 +146,8 @@ class InferCommand {
         InferredMeasurement inferred = session_->infer(table, start, known_);
         inferred.run = run_;
         std::optional<RecordedFeatures> recording;
-        if (names_missing_ && inferred.fault.empty() && isMismatch(selectEstimate(inferred).statuses)) {
+        if (names_missing_ && source_.getReader().findReduction() == nullptr && inferred.fault.empty() &&
+            isMismatch(selectEstimate(inferred).statuses)) {
           waiting.describe("looking for what the model lacks, " + table.source);
           recording = readRecording(source_.getReader(), table, start, known_);
           inferred.missing = findMissingTerm(source_.getExperiment(), *recording, inferred);

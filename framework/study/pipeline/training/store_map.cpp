@@ -17,6 +17,16 @@ ExperimentSpec nameEngine(ExperimentSpec experiment, const Simulator& simulator)
   return experiment;
 }
 
+/// As a person wrote it: with the samples that are reduced.
+ExperimentSpec takeWhole(const Study& study) {
+  ExperimentSpec experiment = study.experiment;
+  if (study.reduced != nullptr) {
+    experiment.features = study.reduced->whole.features;
+    experiment.noise = study.reduced->whole.noise;
+  }
+  return experiment;
+}
+
 CoverageRecord recordCoverage(const MethodSummary& method) {
   CoverageRecord record{method.accepted, Eigen::VectorXd(static_cast<Eigen::Index>(method.metrics.size()))};
   for (std::size_t p = 0; p < method.metrics.size(); ++p) {
@@ -53,12 +63,13 @@ void storeMap(const std::filesystem::path& file, const Study& study, const Evalu
           recordCoverage(method);
     }
   }
-  const ExperimentSpec experiment = nameEngine(study.experiment, study.simulator);
+  const ExperimentSpec experiment = nameEngine(takeWhole(study), study.simulator);
   TrainedFile stored{
       experiment.model.parameters, experiment.model.inputs, {}, map.online, writeExperiment(experiment)};
   for (const FeatureInfo& info : study.extractor.getInfos()) {
     stored.feature_names.push_back(info.name);
   }
+  stored.reduction = study.reduced != nullptr ? study.reduced->reduction : nullptr;
   writeTrainedFile(file, stored);
 }
 
