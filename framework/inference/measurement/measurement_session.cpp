@@ -71,6 +71,11 @@ InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<
     getReader().warnOfInterpolation(table, start);
     InferredMeasurement inferred = inferResponse(table, start, found.response, found.features, known);
     inferred.remarks.push_back(reduction->describe(inferrer_.getExperiment().model.parameters));
+    if (inferred.trust && inferred.trust->statuses.front() == TrustStatus::kModelMismatch) {
+      inferred.remarks.emplace_back(
+          "reduced samples do not show what misfits; inference from the experiment file does "
+          "(twinmap infer FILE.yaml MEASUREMENT)");
+    }
     return inferred;
   }
   if (!samplesByNeed()) {
