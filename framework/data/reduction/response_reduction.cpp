@@ -182,11 +182,14 @@ std::uint64_t ResponseReduction::calcDigest() const {
 std::string ResponseReduction::describe(const std::vector<ParameterSpec>& parameters) const {
   Index worst = 0;
   const double ratio = stddev_ratio.maxCoeff(&worst);
+  const Index spans = layout.times.size();
+  const std::string each =
+      spans > 1 ? fmt::format(", {} in each of {} spans of time", countScores(), spans) : "";
   return fmt::format(
-      "{} samples are reduced to {} scores, {} in each of {} spans of time: standard deviations are {} times "
-      "those that all samples allow, at most ({})",
-      countSamples(), countScores() * layout.times.size(), countScores(), layout.times.size(),
-      toShortText(ratio, 5), parameters[static_cast<std::size_t>(worst)].name.text);
+      "{} samples are reduced to {} scores{}: standard deviations are {} times those that all samples allow, "
+      "at most ({})",
+      countSamples(), countScores() * spans, each, toShortText(ratio, 5),
+      parameters[static_cast<std::size_t>(worst)].name.text);
 }
 
 bool isReduced(const ExperimentSpec& experiment) {
