@@ -67,12 +67,10 @@ const std::vector<NoticeText> kStatuses{
      "model's."},
     {Notice::kUncalibrated, "uncalibrated", true, kDegraded,
      "of the run's test samples the 95 % intervals of a parameter held less than 92 %, which chance does in "
-     "one "
-     "of 1000 runs",
+     "one of 1000 runs",
      "Sample the posterior, which needs no normal distribution: --posterior.",
      "The estimator takes its errors for smaller than they are, as along a ridge; refined, least squares "
-     "ended in "
-     "another basin, or at a bound."},
+     "ended in another basin, or at a bound."},
     {Notice::kNonlinear, "nonlinear", true, kDegraded,
      "the parameters fit, but the misfit around them is not that of a normal distribution",
      "Sample the posterior, which needs no normal distribution: --posterior.",

@@ -35,8 +35,7 @@ struct Simulated {
 
 /// The information of all samples with that of uniform parameters, so that it is regular.
 MatrixXd addPrior(MatrixXd information) {
-  constexpr double kUniform = 12.0;  // per width
-  information.diagonal().array() += kUniform;
+  information.diagonal().array() += kUniformInformation;
   return information;
 }
 

@@ -171,7 +171,7 @@ bool isStraighterPlain(const BasinSearch& found, ProblemSurface& whole, ProblemS
 /// In the logarithms, or as findRidgeShape() says; of many parameters in whichever they are straighter.
 Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                       const PosteriorDrawOptions& options) {
-  RidgeShape shape = findRidgeShape(whole.upd(), found.basins.front());
+  RidgeShape shape;
   std::unique_ptr<ProblemSurface> straight;
   if (problem.drawn > kManyUnknown) {
     shape.plain = listAll(problem);
@@ -180,8 +180,11 @@ Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found,
       shape.plain.clear();
       straight.reset();
     }
-  } else if (!shape.plain.empty()) {
-    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
+  } else {
+    shape = findRidgeShape(whole.upd(), found.basins.front());
+    if (!shape.plain.empty()) {
+      straight = std::make_unique<ProblemSurface>(problem, shape.plain);
+    }
   }
   Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
   if (straight) {
