@@ -2,11 +2,19 @@
 import os
 import signal
 import subprocess
-import time
 import unittest
 from pathlib import Path
 
-from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, find_processes, read_columns, read_csv, read_datasets
+from support import (
+    EXPERIMENTS,
+    TWINMAP,
+    OwnFolderTestCase,
+    await_processes,
+    call,
+    read_columns,
+    read_csv,
+    read_datasets,
+)
 
 FMUS = Path(os.environ["TWINMAP_TEST_FMUS"])
 FAULTY = """
@@ -75,10 +83,7 @@ class FmuTest(OwnFolderTestCase):
         )
 
     def check_nothing_is_left(self):
-        deadline = time.time() + 10
-        while time.time() < deadline and (find_processes(self.mark) or list(self.tmp.iterdir())):
-            time.sleep(0.05)
-        self.assertEqual(find_processes(self.mark), [])
+        self.assertEqual(await_processes(self.mark, lambda found: not found and not list(self.tmp.iterdir())), [])
         self.assertEqual(list(self.tmp.iterdir()), [])
 
     def test_variables_lists_what_can_be_named(self):
@@ -148,10 +153,8 @@ class FmuTest(OwnFolderTestCase):
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        deadline = time.time() + 20
-        while time.time() < deadline and len(find_processes(self.mark)) < 3:  # twinmap, the guard, the worker
-            time.sleep(0.05)
-        self.assertGreaterEqual(len(find_processes(self.mark)), 3)
+        expected = 3  # twinmap, the guard, the worker
+        self.assertGreaterEqual(len(await_processes(self.mark, lambda found: len(found) >= expected)), expected)
         child.send_signal(signal.SIGKILL)
         child.wait()
         self.check_nothing_is_left()

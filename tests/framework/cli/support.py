@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -85,6 +86,18 @@ def find_processes(variable):
                 found.append(int(entry.name))
         except OSError:
             pass
+    return found
+
+
+def await_processes(variable, enough, timeout=20):
+    """What the first look finds that is `enough`, or the last look of `timeout` seconds. To be judged as it is: a
+    second look can differ, as a process that is just becoming another program (`python3` may be a script that starts
+    one) has no environment."""
+    deadline = time.monotonic() + timeout
+    found = find_processes(variable)
+    while not enough(found) and time.monotonic() < deadline:
+        time.sleep(0.02)
+        found = find_processes(variable)
     return found
 
 
