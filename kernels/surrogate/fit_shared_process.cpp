@@ -59,8 +59,12 @@ SearchData takeSpreadValues(const MatrixXd& points, const MatrixXd& values) {
   return {points(Eigen::all, taken), values(taken, Eigen::all)};
 }
 
-SharedChoice search(const SearchData& data, const SharedStructure& structure, const VectorXd& start,
-                    int evaluations, StopFlag stop) {
+struct Searched : SharedChoice {
+  bool converged;  ///< within kTolerance
+};
+
+Searched search(const SearchData& data, const SharedStructure& structure, const VectorXd& start,
+                int evaluations, StopFlag stop) {
   LeftOutDensity density(data.points, data.values, structure);
   const Objective objective = [&](const VectorXd& point, VectorXd& gradient) {
     LikelihoodEvaluation evaluation;
@@ -73,7 +77,7 @@ SharedChoice search(const SearchData& data, const SharedStructure& structure, co
   limits.tolerance = kTolerance * static_cast<double>(n);
   limits.stop = stop;
   const SearchResult result = minimize(objective, n, start, makeBox(data.points.rows()), limits);
-  return {structure, fromLog(result.end), result.objective};
+  return {{structure, fromLog(result.end), result.objective}, result.converged};
 }
 
 /// The better of two beginnings: functions about as smooth as the box is wide, and functions that change
@@ -82,16 +86,14 @@ SharedChoice search(const SearchData& data, const SharedStructure& structure, co
 SharedChoice searchFromStarts(const SearchData& data, const SharedStructure& structure, StopFlag stop) {
   constexpr double kLengthScales[] = {2.0, 0.7}, kNuggets[] = {1e-6, 1e-4};
   const Index p = data.points.rows();
-  SharedChoice best;
-  best.negative_log_density = std::numeric_limits<double>::infinity();
-  for (const int i : {0, 1}) {
+  const auto try_from = [&](int i) {
     const SharedHyperparameters start{VectorXd::Constant(p, kLengthScales[i]), kNuggets[i]};
-    const SharedChoice tried = search(data, structure, toLog(start), kTrialEvaluations, stop);
-    if (i == 0 || tried.negative_log_density < best.negative_log_density) {
-      best = tried;
-    }
-  }
-  return search(data, structure, toLog(best.hyperparameters), kFirstEvaluations, stop);
+    return search(data, structure, toLog(start), kTrialEvaluations, stop);
+  };
+  const Searched smooth = try_from(0), changing = try_from(1);
+  const Searched& better = changing.negative_log_density < smooth.negative_log_density ? changing : smooth;
+  return better.converged ? better
+                          : search(data, structure, toLog(better.hyperparameters), kFirstEvaluations, stop);
 }
 
 void requireFound(const SharedChoice& choice) {
@@ -110,18 +112,20 @@ SharedChoice chooseOnSpread(const MatrixXd& points, const MatrixXd& values, Stop
   const SearchData data = takeSpreadValues(points, values);
   SharedChoice best = searchFromStarts(data, {}, stop);
   const VectorXd found = toLog(best.hyperparameters);
-  for (const Trend trend : {Trend::kLinear, Trend::kQuadratic}) {
-    for (const SmoothCovariance covariance :
-         {SmoothCovariance::kSquaredExponential, SmoothCovariance::kMatern52}) {
-      const bool done = trend == Trend::kLinear && covariance == SmoothCovariance::kSquaredExponential;
-      if (done ||
-          (trend == Trend::kQuadratic && data.points.cols() < kPointsPerTerm * countTerms(trend, p))) {
-        continue;
-      }
-      const SharedChoice other = search(data, {covariance, trend}, found, kFurtherEvaluations, stop);
-      if (other.negative_log_density < best.negative_log_density) {
-        best = other;
-      }
+  const auto improve_by = [&](const SharedStructure& structure) {
+    const SharedChoice other = search(data, structure, found, kFurtherEvaluations, stop);
+    const bool better = other.negative_log_density < best.negative_log_density;
+    if (better) {
+      best = other;
+    }
+    return better;
+  };
+  const bool rough = improve_by({SmoothCovariance::kMatern52, Trend::kLinear});
+  if (data.points.cols() >= kPointsPerTerm * countTerms(Trend::kQuadratic, p)) {
+    (void)improve_by({SmoothCovariance::kSquaredExponential, Trend::kQuadratic});
+    // Functions that are smooth but for a linear trend are so but for a quadratic one: it was never better.
+    if (rough) {
+      (void)improve_by({SmoothCovariance::kMatern52, Trend::kQuadratic});
     }
   }
   requireFound(best);

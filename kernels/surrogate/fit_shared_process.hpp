@@ -18,7 +18,7 @@ struct SharedChoice {
 /// measurement's noise) at `points` (p x n, within about [-1, 1]) by LeftOutDensity and L-BFGS, on at most
 /// 300 points. A quadratic trend is tried where the points are four times its terms. Throws
 /// std::invalid_argument for fewer points than linear terms + 2, std::runtime_error where no structure can be
-/// fitted. Cost: some 60 evaluations.
+/// fitted. Cost: some 40 evaluations.
 SharedChoice chooseSharedProcess(const Eigen::MatrixXd& points, const Eigen::MatrixXd& values,
                                  StopFlag stop = nullptr);
 

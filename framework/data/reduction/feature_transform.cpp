@@ -10,6 +10,7 @@
 namespace twinmap {
 namespace {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
 
 AffineStep fit(const ZScoreSpec&, const LabelledFeatures& samples) {
@@ -54,9 +55,16 @@ void applyStep(const AffineStep& step, LabelledFeatures& samples) {
 }  // namespace
 
 MatrixXd FeatureTransform::apply(const MatrixXd& features) const {
-  MatrixXd inputs = features;
-  for (const AffineStep& step : steps) {
-    inputs = step.apply(inputs);
+  constexpr Index kChunk = 64;  // columns: what steps pass on stays in a cache
+  const Index count = features.cols();
+  MatrixXd inputs(steps.empty() ? features.rows() : steps.back().countInputs(), count);
+  for (Index first = 0; first < count; first += kChunk) {
+    const Index size = std::min(kChunk, count - first);
+    MatrixXd chunk = features.middleCols(first, size);
+    for (const AffineStep& step : steps) {
+      chunk = step.apply(chunk);
+    }
+    inputs.middleCols(first, size) = chunk;
   }
   return inputs;
 }

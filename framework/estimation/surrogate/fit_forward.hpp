@@ -36,7 +36,7 @@ struct ForwardFit {
 /// samples, to start from; empty to search anew. `folds`: the simulations that each fold of a
 /// cross-validation keeps (rising), where all is searched anew; they share factorisations with the whole.
 /// Throws std::invalid_argument for a feature without noise and for too few simulations, gp::Stopped. Cost: a
-/// window some 60 evaluations of gp::LeftOutDensity on 300 points, 8 from similar choices; then 2 n^3 flops,
+/// window some 40 evaluations of gp::LeftOutDensity on 300 points, 8 from similar choices; then 2 n^3 flops,
 /// with slopes (n + u m)^3 for the whole with all its folds.
 ForwardFit fitForward(const ForwardSamples& samples, const ForwardChoices& similar,
                       const TrainingControl& control,

@@ -230,6 +230,7 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
 
 std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::vector<VectorXd>& starts) {
   constexpr int kFirstSteps = 3, kSteps = 12;
+  constexpr int kWithAllScores = 2;                  // after which the better metric moves little
   constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
   constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric
   std::vector<Minimum> minima;
@@ -254,7 +255,7 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::ve
       }
     }
     if (apart) {
-      minimum.objective = calcObjective(rough_, minimum.point);
+      minimum.objective = improve(rough_, kWithAllScores, minimum.point);
       minima.push_back(minimum);
     }
   }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
+#include <limits>
 
 #include "framework/analysis/calibration.hpp"
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -17,6 +19,30 @@ std::size_t countSamples(const CsvTable& predictions) {
     count += predictions.getText(row, "parameter") == predictions.getText(0, "parameter") ? 1 : 0;
   }
   return count;
+}
+
+std::vector<std::size_t> findRows(const CsvTable& predictions, const std::string& parameter) {
+  const auto column = static_cast<std::size_t>(predictions.findColumn("parameter"));
+  std::vector<std::size_t> rows;
+  for (std::size_t row = 0; row < predictions.rows.size(); ++row) {
+    if (predictions.rows[row][column] == parameter) {
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+/// Empty if there is no such column. Not by getNumber(), which looks for the column in each of many rows.
+std::vector<double> listNumbers(const CsvTable& predictions, const std::vector<std::size_t>& rows,
+                                const std::string& column) {
+  const int index = predictions.findColumn(column);
+  std::vector<double> numbers;
+  for (const std::size_t row : index < 0 ? std::vector<std::size_t>() : rows) {
+    double value = 0.0;
+    const bool known = parseLiteral(predictions.rows[row][static_cast<std::size_t>(index)], value);
+    numbers.push_back(known ? value : std::numeric_limits<double>::quiet_NaN());
+  }
+  return numbers;
 }
 
 std::vector<double> takeDrawn(std::vector<double> values) {
@@ -51,21 +77,10 @@ double calcPit(double z) {
 }
 
 ParameterPredictions collectPredictions(const RunFolder& run, const std::string& parameter) {
-  const CsvTable& predictions = run.predictions;
-  ParameterPredictions found;
-  const bool has_limit = predictions.hasColumn("limit_stddev");
-  for (std::size_t row = 0; row < predictions.rows.size(); ++row) {
-    if (predictions.getText(row, "parameter") != parameter) {
-      continue;
-    }
-    found.samples.push_back(predictions.getNumber(row, "sample"));
-    found.truth.push_back(predictions.getNumber(row, "true"));
-    found.inferred.push_back(predictions.getNumber(row, "inferred"));
-    found.stddev.push_back(predictions.getNumber(row, "stddev"));
-    if (has_limit) {
-      found.limit_stddev.push_back(predictions.getNumber(row, "limit_stddev"));
-    }
-  }
+  const std::vector<std::size_t> rows = findRows(run.predictions, parameter);
+  const auto list = [&](const char* column) { return listNumbers(run.predictions, rows, column); };
+  ParameterPredictions found{list("sample"), list("true"), list("inferred"),
+                             list("stddev"), {},           list("limit_stddev")};
   const auto is_known = [](double value) { return std::isfinite(value); };
   if (std::none_of(found.limit_stddev.begin(), found.limit_stddev.end(), is_known)) {
     found.limit_stddev.clear();

@@ -57,8 +57,12 @@ LabelledFeatures makeLabelledFeatures(const ModelSpec& model, const Trajectories
   labelled.infos = extractor.getInfos();
   labelled.features.resize(extractor.getFeatureCount(), count * replicates);
   for (int r = 0; r < replicates; ++r) {
-    labelled.features.middleCols(r * count, count) =
-        drawFeatures(trajectories, extractor, noise, random, r)(Eigen::all, samples);
+    Eigen::MatrixXd drawn = drawFeatures(trajectories, extractor, noise, random, r);
+    if (drawn.cols() == labelled.features.cols()) {  // no copy of what may be large
+      labelled.features = std::move(drawn);
+    } else {
+      labelled.features.middleCols(r * count, count) = drawn(Eigen::all, samples);
+    }
   }
   setPoints(model, Eigen::MatrixXd(trajectories.parameters(Eigen::all, samples)).replicate(1, replicates),
             labelled);

@@ -42,17 +42,19 @@ MatrixXd drawNoise(const NoiseCovariance& covariance, const NoiseWhitener& noise
   return covariance * noise.applyTransposed(white);
 }
 
-/// The share of cases found where stencil i is moved by size * directions[i].
-double calcShareFound(const PowerCases& cases, const std::vector<VectorXd>& directions, double size) {
-  int found = 0;
-  for (std::size_t i = 0; i < cases.judges.size(); ++i) {
-    for (Index draw = 0; draw < cases.draws; ++draw) {
-      const VectorXd moved =
-          size * directions[i] + cases.noise.col(static_cast<Index>(i) * cases.draws + draw);
-      found += cases.judges[i]->calcPValue(moved) < cases.level ? 1 : 0;
-    }
+/// The share of cases found where stencil i is moved by size * directions[i]; once it is below `least`, what it
+/// is at most.
+double calcShareFound(const PowerCases& cases, const std::vector<VectorXd>& directions, double size,
+                      double least = 0.0) {
+  const Index count = cases.noise.cols();
+  Index at_most = count;
+  const auto share = [&] { return static_cast<double>(at_most) / static_cast<double>(count); };
+  for (Index i = 0; i < count && share() >= least; ++i) {
+    const auto stencil = static_cast<std::size_t>(i / cases.draws);
+    const VectorXd moved = size * directions[stencil] + cases.noise.col(i);
+    at_most -= cases.judges[stencil]->calcPValue(moved) < cases.level ? 0 : 1;
   }
-  return static_cast<double>(found) / static_cast<double>(cases.noise.cols());
+  return share();
 }
 
 /// Bisects the logarithm of the size, to 5 %.
@@ -67,7 +69,7 @@ void findSmallest(const PowerCases& cases, const std::vector<VectorXd>& directio
   double below = kSpan * change.largest, above = change.largest;
   while (above > kStep * below) {
     const double middle = std::sqrt(below * above);
-    (calcShareFound(cases, directions, middle) < kFound ? below : above) = middle;
+    (calcShareFound(cases, directions, middle, kFound) < kFound ? below : above) = middle;
   }
   change.smallest = above;
 }
