@@ -5,6 +5,8 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "framework/base/random/standard_normal.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -23,7 +25,7 @@ double calcStandardCrps(double z) {
 
 double calcNormalQuantile(double probability) {
   constexpr double kSmallest = 1e-16;
-  return boost::math::quantile(boost::math::normal(), std::clamp(probability, kSmallest, 1.0 - kSmallest));
+  return toStandardNormal(std::clamp(probability, kSmallest, 1.0 - kSmallest));
 }
 
 double calcTwoSidedQuantile(double probability) {

@@ -65,7 +65,13 @@ std::string explainNoFile(const fs::path& path) {
   if (fs::exists(path)) {
     return ": is not a file";
   }
-  return path.string().find('=') == std::string::npos
+  const std::string text = path.string();
+  if (text.find_first_not_of("0123456789") == std::string::npos) {
+    return ": does not exist; a number for an option that can go without one is joined to it, as in "
+           "--posterior=" +
+           text;
+  }
+  return text.find('=') == std::string::npos
              ? ": does not exist"
              : ": does not exist; values of the experiment cannot be given here: write them into its file";
 }

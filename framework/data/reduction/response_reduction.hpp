@@ -12,6 +12,9 @@
 
 namespace twinmap {
 
+/// Scores of a window at most.
+inline constexpr Eigen::Index kMostScores = 24;
+
 /// The samples of all outputs within a span of time, and what is kept of them.
 struct ReductionWindow {
   std::vector<Eigen::Index> rows;  ///< of the response, rising: output by output

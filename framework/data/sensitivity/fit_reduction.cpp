@@ -24,7 +24,7 @@ using Eigen::VectorXd;
 
 constexpr Index kPoints = 48, kCheckPoints = 12;
 constexpr double kLeftOut = 3e-4;
-constexpr Index kColumns = 32, kFewest = 4, kMost = 24;  // of the sketch; scores of a window
+constexpr Index kColumns = 32, kFewest = 4;  // of the sketch; scores of a window
 
 /// A response and its sensitivities (per width of the bounds), in units of the noise.
 struct Simulated {
@@ -147,7 +147,7 @@ class ReductionFit {
   void chooseDirections() {
     std::vector<linalg::SymmetricEigen> decomposed;
     VectorXd said = VectorXd::Zero(kColumns);
-    Index fewest = kMost;
+    Index fewest = kMostScores;
     for (const MatrixXd& part : sketch_) {
       decomposed.push_back(linalg::calcSymmetricEigen(part.transpose() * part));
       said += decomposed.back().values.reverse().cwiseMax(0.0);

@@ -47,8 +47,8 @@ double countSearched(const ExperimentSpec& experiment) {
              : double(samples) * countSearchedReplicates(Eigen::Index(samples) * replicates, replicates);
 }
 
-/// Numbers that the windows of reduced samples become at most: 24 scores and two sums each (fitReduction).
-constexpr double kOfWindow = 26.0;
+/// Numbers that a window of reduced samples becomes at most: scores and two sums.
+constexpr double kOfWindow = kMostScores + 2.0;
 
 double countRecordedRows(const ExperimentSpec& experiment) {
   return static_cast<double>(collectTimes(experiment.features).size()) *

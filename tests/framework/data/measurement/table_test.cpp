@@ -164,6 +164,9 @@ TEST(ReadTable, ErrorsNameTheFile) {
       getFileError("noise.scale=2"),
       "noise.scale=2: does not exist; values of the experiment cannot be given here: write them into its "
       "file");
+  EXPECT_EQ(getError([] { readTable("512"); }),
+            "512: does not exist; a number for an option that can go without one is joined to it, as in "
+            "--posterior=512");
   std::ofstream(folder / "a.xlsx") << "t";
   EXPECT_EQ(getFileError("a.xlsx"),
             "a.xlsx: must be a .csv, .txt, .tsv, .dat, .mat, .h5 or .hdf5 file, by its name");
