@@ -274,9 +274,7 @@ class Diagnoser {
       diagnosis.after = diagnosis.before;
     }
     diagnosis.corrected = fits_[diagnosis.found].experiment;
-    for (const FoundTerm& term : fits_[diagnosis.found].terms) {
-      diagnosis.terms.push_back(term.candidate.term);
-    }
+    diagnosis.terms = fits_[diagnosis.found].terms;
     average(diagnosis);
     if (!diagnosis.after.isExplained()) {
       diagnosis.remainder =
@@ -300,6 +298,14 @@ MatrixXd AveragedEstimate::calcQuantiles(const VectorXd& probabilities) const {
 
 const char* Diagnosis::getStatus() const {
   return getNotice(after.isExplained() ? Notice::kOk : Notice::kModelIncomplete).name;
+}
+
+std::vector<std::string> Diagnosis::listTerms() const {
+  std::vector<std::string> names;
+  for (const FoundTerm& term : terms) {
+    names.push_back(term.candidate.term);
+  }
+  return names;
 }
 
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,

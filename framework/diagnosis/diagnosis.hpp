@@ -55,6 +55,12 @@ struct DiagnosisStep {
   bool found = false;                      ///< whether the first one is missing
 };
 
+/// A term of a model that was found, its coefficient and own scales the parameters from `first` on.
+struct FoundTerm {
+  TermCandidate candidate;
+  Eigen::Index first = 0;
+};
+
 /// How well an experiment explains the recordings, and what it says of the parameters.
 struct ExplainedFit {
   SimulatorPosterior posterior;
@@ -80,17 +86,20 @@ struct Diagnosis {
   std::size_t shared = 0;  ///< parameters of the machine before any term, the first of `corrected`
   ExplainedFit before;
   std::vector<DiagnosisStep>
-      steps;                       ///< those that found a term, then the one that found none, if it was made
-  std::size_t found = 0;           ///< of the steps, the first ones, that added terms to `corrected`
-  std::vector<std::string> terms;  ///< those of `corrected`, in their order
-  ExperimentSpec corrected;        ///< with them, as further parameters
-  AveragedEstimate averaged;       ///< over the terms that are tied with the last one found, it among them
-  ExplainedFit after;              ///< that of `corrected`; `before` where nothing was found
+      steps;                     ///< those that found a term, then the one that found none, if it was made
+  std::size_t found = 0;         ///< of the steps, the first ones, that added terms to `corrected`
+  std::vector<FoundTerm> terms;  ///< those of `corrected`, in their order
+  ExperimentSpec corrected;      ///< with them, as further parameters
+  AveragedEstimate averaged;     ///< over the terms that are tied with the last one found, it among them
+  ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;
 
   /// "ok", or "model_incomplete" where something is left unexplained.
   const char* getStatus() const;
+
+  /// The names of the terms.
+  std::vector<std::string> listTerms() const;
 };
 
 /// Terms whose evidences differ by less are tied: 20 to 1.

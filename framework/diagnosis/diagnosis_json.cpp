@@ -115,7 +115,7 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
   Json json{{"source", source},
             {"status", diagnosis.getStatus()},
             {"level", diagnosis.level},
-            {"found", diagnosis.terms},
+            {"found", diagnosis.listTerms()},
             {"complete", diagnosis.after.isExplained()},
             {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},

@@ -8,6 +8,7 @@
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
+#include "framework/study/diagnosis/diagnosis_page.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -23,6 +24,20 @@ void printBlindSpots(const DiagnoseArguments& arguments, const MeasurementReader
                                 : makeBlindSpotTable(spots, parameters));
 }
 
+/// In the order of readRecordings().
+std::vector<std::string> nameRecordings(const DiagnoseArguments& arguments) {
+  std::vector<std::string> names;
+  for (const std::string& file : arguments.files) {
+    for (const double start : arguments.starts) {
+      names.push_back(fmt::format("{}, from {:g} s", file, start));
+    }
+    if (arguments.starts.empty()) {
+      names.push_back(file);
+    }
+  }
+  return names;
+}
+
 }  // namespace
 
 void diagnose(const DiagnoseArguments& arguments) {
@@ -33,6 +48,9 @@ void diagnose(const DiagnoseArguments& arguments) {
   if (arguments.files.empty()) {
     if (!arguments.accepted.empty()) {
       throw ExperimentError("--accept fits a term to measurements; give their files");
+    }
+    if (!arguments.page.empty()) {
+      throw ExperimentError("--page draws measurements; give their files");
     }
     printBlindSpots(arguments, reader, recordings);
     return;
@@ -47,6 +65,10 @@ void diagnose(const DiagnoseArguments& arguments) {
                                 : makeDiagnosisTable(diagnosis, name));
   if (!arguments.out.empty()) {
     writeTextFile(arguments.out, writeExperiment(diagnosis.corrected));
+  }
+  if (!arguments.page.empty()) {
+    writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, reader.getExperiment(), recordings,
+                                                    nameRecordings(arguments)));
   }
 }
 
