@@ -61,7 +61,8 @@ FitMotion::FitMotion(const Diagnosis& diagnosis, const ExperimentSpec& experimen
 }
 
 RecordedMotion FitMotion::simulate(std::size_t recording, const VectorXd& times) const {
-  ModelSpec observed = diagnosis_.corrected.model;
+  const ModelSpec& model = diagnosis_.corrected.model;
+  ModelSpec observed = model;
   observed.outputs.clear();
   for (const ForcedCoordinate& coordinate : coordinates_) {
     observeMotion(coordinate, observed.outputs);
@@ -70,6 +71,8 @@ RecordedMotion FitMotion::simulate(std::size_t recording, const VectorXd& times)
     observeForce(std::to_string(force.term) + " on " + coordinates_[force.coordinate].name, force.force,
                  observed.outputs);
   }
+  // controllers read them
+  observed.outputs.insert(observed.outputs.end(), model.outputs.begin(), model.outputs.end());
   const SingleRecording single =
       takeRecording(diagnosis_.corrected, recordings_, diagnosis_.after.posterior.best, recording);
   VectorXd point(single.point.size() + recordings_.known.size());

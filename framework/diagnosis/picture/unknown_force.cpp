@@ -59,21 +59,33 @@ MatrixXd calcFitCovariance(const LinearizedRecordings& linear) {
                                MatrixXd::Identity(hessian.rows(), hessian.cols()));
 }
 
-/// What is known of the parameters by their covariance, as further residuals.
-void addKnowledge(const MatrixXd& covariance, LinearizedRecordings& linear) {
-  const Index n = linear.residual.size(), u = covariance.rows();
+/// What is known of the first parameters by their covariance, as further residuals.
+void addKnowledge(const MatrixXd& covariance, FittedRecording& fitted) {
+  LinearizedRecordings& linear = fitted.linear;
+  const Index n = linear.residual.size(), known = covariance.rows();
   const MatrixXd information =
-      linalg::solveCholesky(linalg::calcCholesky(covariance).lower, MatrixXd::Identity(u, u));
-  linear.residual.conservativeResize(n + u);
-  linear.residual.tail(u).setZero();
-  linear.jacobian.conservativeResize(n + u, Eigen::NoChange);
-  linear.jacobian.bottomRows(u) = linalg::calcCholesky(information).lower.transpose();
+      linalg::solveCholesky(linalg::calcCholesky(covariance).lower, MatrixXd::Identity(known, known));
+  linear.residual.conservativeResize(n + known);
+  linear.residual.tail(known).setZero();
+  linear.jacobian.conservativeResize(n + known, Eigen::NoChange);
+  linear.jacobian.bottomRows(known).setZero();
+  linear.jacobian.bottomLeftCorner(known, known) = linalg::calcCholesky(information).lower.transpose();
+  MatrixXd& responses = fitted.effects[0].responses;
+  responses.conservativeResize(n + known, Eigen::NoChange);
+  responses.bottomRows(known).setZero();
 }
 
+/// Of what a force is a function.
+struct ForceArgument {
+  std::string quantity;
+  VectorXd knots;
+  double scale = 1.0;  ///< of its correlation lengths
+};
+
 /// One or several recordings at the fit.
-class ForceProblem {
+class LinearFit {
  public:
-  ForceProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings, const VectorXd& point)
+  LinearFit(const ExperimentSpec& experiment, const RecordedFeatures& recordings, const VectorXd& point)
       : experiment_(experiment),
         recordings_(recordings),
         point_(point),
@@ -81,42 +93,18 @@ class ForceProblem {
 
   const LinearizedRecordings& getLinear() const { return linear_; }
 
-  /// What is known of all parameters by the fit.
-  void setCovariance(const MatrixXd& covariance) { covariance_ = covariance; }
-
-  /// A force on a coordinate as a function of a quantity, scale: of its correlation lengths. In the place of
-  /// a term, without its parameters and with its force (n) in the residual, the others are known as the fit
-  /// knows them; else they are free within their bounds.
-  ForceCurve estimate(const ForcedCoordinate& coordinate, const std::string& quantity, const VectorXd& knots,
-                      double scale, const Dropped& dropped, const VectorXd& term_effect) const {
-    const std::vector<Index> kept = dropped.listKept(linear_.jacobian.cols());
-    std::vector<FittedRecording> fitted(1);
-    LinearizedRecordings& linear = fitted[0].linear;
-    linear = {linear_.residual + term_effect, linear_.jacobian(Eigen::all, kept), {}};
-    if (dropped.count > 0) {
-      addKnowledge(covariance_(kept, kept), linear);
+  /// With a force on a coordinate; in the place of a term's, if there is one, whose parameters are dropped.
+  FittedRecording addForce(const ForcedCoordinate& coordinate, const ForceArgument& argument,
+                           const TermForce* term, const Dropped& dropped) const {
+    FittedRecording fitted;
+    fitted.linear.residual = linear_.residual;
+    fitted.linear.jacobian = linear_.jacobian(Eigen::all, dropped.listKept(linear_.jacobian.cols()));
+    if (term != nullptr) {
+      fitted.linear.residual += calcForceEffect(experiment_, recordings_, point_, coordinate, term->force);
     }
-    fitted[0].effects.push_back(
-        calcForceEffect(experiment_, recordings_, point_, coordinate, quantity, knots));
-    MatrixXd& responses = fitted[0].effects[0].responses;
-    const Index n = responses.rows(), all = linear.residual.size();
-    responses.conservativeResize(all, Eigen::NoChange);
-    responses.bottomRows(all - n).setZero();
-    const auto u = static_cast<Index>(kept.size());
-    const ProcessProblem problem{fitted, 0, u, VectorXd::Ones(u)};
-    std::vector<double> lengths;
-    for (const double share : kLengthShares) {
-      lengths.push_back(share * scale);
-    }
-    const BestProcess best = searchProcess(problem, lengths);
-    const ProcessEstimate estimate = estimateProcess(problem, best);
-    return {knots, estimate.means.front(), estimate.stddevs.front(), std::sqrt(best.variance),
-            best.log_evidence};
-  }
-
-  /// What the force of a term does to the residual (n).
-  VectorXd calcEffect(const ForcedCoordinate& coordinate, const Expression& force) const {
-    return calcForceEffect(experiment_, recordings_, point_, coordinate, force);
+    fitted.effects.push_back(
+        calcForceEffect(experiment_, recordings_, point_, coordinate, argument.quantity, argument.knots));
+    return fitted;
   }
 
  private:
@@ -124,8 +112,25 @@ class ForceProblem {
   RecordedFeatures recordings_;
   VectorXd point_;
   LinearizedRecordings linear_;
-  MatrixXd covariance_;
 };
+
+/// The force of each recording. shared: of their parameters, the first ones.
+std::vector<ForceCurve> estimateForces(const std::vector<FittedRecording>& fitted, Index shared,
+                                       const ForceArgument& argument) {
+  const ProcessProblem problem{fitted, 0, shared, VectorXd::Ones(fitted.front().linear.jacobian.cols())};
+  std::vector<double> lengths;
+  for (const double share : kLengthShares) {
+    lengths.push_back(share * argument.scale);
+  }
+  const BestProcess best = searchProcess(problem, lengths);
+  const ProcessEstimate estimate = estimateProcess(problem, best);
+  std::vector<ForceCurve> curves;
+  for (std::size_t k = 0; k < fitted.size(); ++k) {
+    curves.push_back({argument.knots, estimate.means[k], estimate.stddevs[k], std::sqrt(best.variance),
+                      best.log_evidence});
+  }
+  return curves;
+}
 
 /// Half of the times at which a speed changes its sign; at least one.
 double countPeriods(const VectorXd& speed) {
@@ -136,18 +141,10 @@ double countPeriods(const VectorXd& speed) {
   return std::max(1.0, 0.5 * changes);
 }
 
-VectorXd spreadKnots(const VectorXd& values) {
-  return VectorXd::LinSpaced(kRangeKnots, values.minCoeff(), values.maxCoeff());
-}
-
-double calcRange(const VectorXd& values) {
-  return values.maxCoeff() - values.minCoeff();
-}
-
-VectorXd append(const VectorXd& values, const VectorXd& more) {
-  VectorXd all(values.size() + more.size());
-  all << values, more;
-  return all;
+RecordedFeatures takeFirst(const RecordedFeatures& recordings, std::size_t count) {
+  RecordedFeatures first = recordings;
+  first.features.resize(std::min(count, first.features.size()));
+  return first;
 }
 
 class ForceEstimator {
@@ -156,98 +153,116 @@ class ForceEstimator {
                  std::size_t count)
       : diagnosis_(diagnosis),
         motion_(motion),
-        together_(diagnosis.corrected, recordings, diagnosis.after.posterior.best) {
+        p_(static_cast<Index>(diagnosis.corrected.model.parameters.size())) {
+    const ExperimentSpec& experiment = diagnosis.corrected;
+    const VectorXd& point = diagnosis.after.posterior.best;
+    covariance_ = calcFitCovariance(linearizeScaled(RecordingsProblem(experiment, recordings), point));
+    const RecordedFeatures drawn = takeFirst(recordings, count);
+    const auto own = static_cast<Index>(experiment.model.nuisance.size() * drawn.features.size());
+    together_.emplace(experiment, drawn, point.head(p_ + own));
     constexpr Index kFineSamples = 1001;  // some tens in the shortest period
-    fine_times_ = VectorXd::LinSpaced(kFineSamples, 0.0, diagnosis.corrected.model.simulation.duration);
-    for (std::size_t k = 0; k < std::min(count, recordings.features.size()); ++k) {
-      const SingleRecording one =
-          takeRecording(diagnosis.corrected, recordings, diagnosis.after.posterior.best, k);
-      single_.emplace_back(diagnosis.corrected, one.recording, one.point);
+    fine_times_ = VectorXd::LinSpaced(kFineSamples, 0.0, experiment.model.simulation.duration);
+    for (std::size_t k = 0; k < drawn.features.size(); ++k) {
+      const SingleRecording one = takeRecording(experiment, recordings, point, k);
+      single_.emplace_back(experiment, one.recording, one.point);
       moved_.push_back(motion.simulate(k, fine_times_));
-    }
-    if (diagnosis.found > 0) {
-      holdParameters();
     }
   }
 
   /// force: number of a term's force; none: beside the corrected model.
   UnknownForce estimate(std::size_t c, const std::optional<std::size_t>& number) const {
-    const ForcedCoordinate& coordinate = motion_.getCoordinates()[c];
-    const TermForce* term = number ? &motion_.getTermForces()[*number] : nullptr;
-    const Dropped dropped = term == nullptr ? Dropped{} : dropTerm(diagnosis_.terms[term->term]);
-    const auto estimateOver = [&](const ForceProblem& problem, const std::string& quantity,
-                                  const VectorXd& knots, double scale) {
-      const VectorXd effect = term == nullptr ? VectorXd::Zero(problem.getLinear().residual.size()).eval()
-                                              : problem.calcEffect(coordinate, term->force);
-      return problem.estimate(coordinate, quantity, knots, scale, dropped, effect);
-    };
     UnknownForce force;
     force.coordinate = c;
-    VectorXd positions, speeds;
+    const TermForce* term = number ? &motion_.getTermForces()[*number] : nullptr;
+    const ForceArgument over_time = makeTimeArgument(c);
+    const std::vector<ForceCurve> curves = estimateOverTime(c, over_time, term);
     for (std::size_t k = 0; k < single_.size(); ++k) {
-      const MovingCoordinate& moved = moved_[k].coordinates[c];
-      const double periods = countPeriods(moved.speed);
-      const double duration = fine_times_[fine_times_.size() - 1];
-      const VectorXd times = VectorXd::LinSpaced(countKnots(periods, single_[k]), 0.0, duration);
-      force.recordings.push_back({estimateOver(single_[k], "t", times, duration / periods),
-                                  motion_.simulate(k, times).coordinates[c], fine_times_, moved,
-                                  number ? moved_[k].forces[*number] : VectorXd()});
-      positions = append(positions, moved.position);
-      speeds = append(speeds, moved.speed);
+      force.recordings.push_back({curves[k], motion_.simulate(k, over_time.knots).coordinates[c], fine_times_,
+                                  moved_[k].coordinates[c], number ? moved_[k].forces[*number] : VectorXd()});
     }
-    force.over_position =
-        estimateOver(together_, coordinate.name, spreadKnots(positions), calcRange(positions));
+    const std::string& name = motion_.getCoordinates()[c].name;
+    force.over_position = estimateTogether(c, makeRangeArgument(name, c, &MovingCoordinate::position), term);
     force.over_speed =
-        estimateOver(together_, coordinate.name + "_dot", spreadKnots(speeds), calcRange(speeds));
+        estimateTogether(c, makeRangeArgument(name + "_dot", c, &MovingCoordinate::speed), term);
     return force;
   }
 
  private:
-  void holdParameters() {
-    const MatrixXd covariance = calcFitCovariance(together_.getLinear());
-    together_.setCovariance(covariance);
-    const auto p = static_cast<Index>(diagnosis_.corrected.model.parameters.size());
-    const auto own = static_cast<Index>(diagnosis_.corrected.model.nuisance.size());
-    for (std::size_t k = 0; k < single_.size(); ++k) {
-      std::vector<Index> mine;
-      for (Index i = 0; i < p + own; ++i) {
-        mine.push_back(i < p ? i : i + static_cast<Index>(k) * own);
-      }
-      single_[k].setCovariance(covariance(mine, mine));
+  /// A force along each recording.
+  std::vector<ForceCurve> estimateOverTime(std::size_t c, const ForceArgument& argument,
+                                           const TermForce* term) const {
+    const Dropped dropped = dropTerm(term);
+    std::vector<FittedRecording> fitted;
+    for (const LinearFit& fit : single_) {
+      fitted.push_back(fit.addForce(motion_.getCoordinates()[c], argument, term, dropped));
+    }
+    addKnowledgeOf(dropped, fitted.front());
+    return estimateForces(fitted, p_ - dropped.count, argument);
+  }
+
+  /// The same force in all recordings.
+  ForceCurve estimateTogether(std::size_t c, const ForceArgument& argument, const TermForce* term) const {
+    const Dropped dropped = dropTerm(term);
+    std::vector<FittedRecording> fitted{
+        together_->addForce(motion_.getCoordinates()[c], argument, term, dropped)};
+    addKnowledgeOf(dropped, fitted.front());
+    return estimateForces(fitted, fitted.front().linear.jacobian.cols(), argument).front();
+  }
+
+  /// In the place of a term, what the fit with it says of the machine's parameters that are left.
+  void addKnowledgeOf(const Dropped& dropped, FittedRecording& fitted) const {
+    if (dropped.count > 0) {
+      const std::vector<Index> kept = dropped.listKept(p_);
+      addKnowledge(covariance_(kept, kept), fitted);
     }
   }
 
-  static Dropped dropTerm(const FoundTerm& term) {
-    return {term.first, 1 + static_cast<Index>(term.candidate.own_scales.size())};
+  Dropped dropTerm(const TermForce* term) const {
+    if (term == nullptr) {
+      return {};
+    }
+    const FoundTerm& found = diagnosis_.terms[term->term];
+    return {found.first, 1 + static_cast<Index>(found.candidate.own_scales.size())};
   }
 
-  static Index countKnots(double periods, const ForceProblem& problem) {
+  /// As fine as the fastest recording needs.
+  ForceArgument makeTimeArgument(std::size_t c) const {
+    double periods = 1.0;
+    for (const RecordedMotion& moved : moved_) {
+      periods = std::max(periods, countPeriods(moved.coordinates[c].speed));
+    }
     const double most =
-        kMostBytes / (sizeof(double) * static_cast<double>(problem.getLinear().residual.size()));
-    return std::clamp(static_cast<Index>(std::min(kKnotsPerPeriod * periods, most)), kFewestKnots,
-                      kMostKnots);
+        kMostBytes / (sizeof(double) * static_cast<double>(together_->getLinear().residual.size()));
+    const Index knots =
+        std::clamp(static_cast<Index>(std::min(kKnotsPerPeriod * periods, most)), kFewestKnots, kMostKnots);
+    const double duration = fine_times_[fine_times_.size() - 1];
+    return {"t", VectorXd::LinSpaced(knots, 0.0, duration), duration / periods};
+  }
+
+  ForceArgument makeRangeArgument(const std::string& quantity, std::size_t c,
+                                  VectorXd MovingCoordinate::*values) const {
+    double lower = kInfinity, upper = -kInfinity;
+    for (const RecordedMotion& moved : moved_) {
+      lower = std::min(lower, (moved.coordinates[c].*values).minCoeff());
+      upper = std::max(upper, (moved.coordinates[c].*values).maxCoeff());
+    }
+    return {quantity, VectorXd::LinSpaced(kRangeKnots, lower, upper), upper - lower};
   }
 
   const Diagnosis& diagnosis_;
   const FitMotion& motion_;
+  const Index p_;
+  MatrixXd covariance_;  // of all unknown parameters, in half-widths
   VectorXd fine_times_;
-  ForceProblem together_;
-  std::vector<ForceProblem> single_;  // each recording alone
+  std::optional<LinearFit> together_;
+  std::vector<LinearFit> single_;  // each recording alone
   std::vector<RecordedMotion> moved_;
 };
 
 }  // namespace
 
-double UnknownForce::calcEvidenceOverTime() const {
-  double evidence = 0.0;
-  for (const ForceOverTime& one : recordings) {
-    evidence += one.force.log_evidence;
-  }
-  return evidence;
-}
-
 bool UnknownForce::mayBe(const ForceCurve& curve) const {
-  return curve.log_evidence > std::max(0.0, calcEvidenceOverTime() - kTiedEvidence);
+  return curve.log_evidence > std::max(0.0, getEvidenceOverTime() - kTiedEvidence);
 }
 
 std::vector<UnknownForce> estimateUnknownForces(const Diagnosis& diagnosis,

@@ -32,7 +32,8 @@ struct UnknownForce {
   std::vector<ForceOverTime> recordings{};
   ForceCurve over_position{}, over_speed{};  ///< were it a function of that alone, the same in all recordings
 
-  double calcEvidenceOverTime() const;
+  /// Of all recordings together.
+  double getEvidenceOverTime() const { return recordings.front().force.log_evidence; }
   /// Whether the recordings do not speak against a function of one quantity: its evidence is hardly less than
   /// that of a force that changes with time as it likes, and than none.
   bool mayBe(const ForceCurve& curve) const;
@@ -42,7 +43,7 @@ struct UnknownForce {
 /// whatever its law, beside the model without it, with the parameters and the other terms of the fit with it,
 /// as well as these are known. On each coordinate without such a term, and on all where something is left
 /// unexplained: beside the corrected model, whose parameters are free and take up what they can. Those with a
-/// term first; of the first `count` recordings over time. The process is that of searchProcess(), by the
+/// term first; by the first `count` recordings. The process is that of searchProcess(), by the
 /// linear model at the fit. Throws std::runtime_error where the fit cannot be simulated with its derivatives.
 /// Cost: for each 40 to 320 derivatives a recording over time, 65 each over position and speed.
 std::vector<UnknownForce> estimateUnknownForces(const Diagnosis& diagnosis,

@@ -163,8 +163,8 @@ std::string describeEvidence(const UnknownForce& force) {
       "Log evidence against no force: {} for a function of speed alone, {} of position alone, {} for what "
       "changes with time as it likes; a difference of 3 is 20 to 1.",
       write(force.over_speed.log_evidence), write(force.over_position.log_evidence),
-      write(force.calcEvidenceOverTime()));
-  if (force.calcEvidenceOverTime() <= 0.0 && !force.mayBe(force.over_speed) &&
+      write(force.getEvidenceOverTime()));
+  if (force.getEvidenceOverTime() <= 0.0 && !force.mayBe(force.over_speed) &&
       !force.mayBe(force.over_position)) {
     text += " The recordings ask for none.";
   } else if (!force.mayBe(force.over_speed) || !force.mayBe(force.over_position)) {

@@ -56,7 +56,7 @@ Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment
   }
   if (!diagnosis.after.isExplained()) {
     section.html +=
-        makeParagraph(std::string(diagnosis.getStatus()) + ": " + describeNotice(Notice::kModelIncomplete));
+        makeLines(std::string(diagnosis.getStatus()) + ": " + describeNotice(Notice::kModelIncomplete));
   }
   constexpr std::size_t kListed = 3;
   section.html +=
