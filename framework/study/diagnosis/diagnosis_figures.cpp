@@ -110,20 +110,18 @@ DataTable makeTermTable(const UnknownForce& force) {
   return table.make();
 }
 
-/// A function of one quantity where the recordings say more of it than was assumed before; no rows where they
-/// speak against one.
-DataTable makeCurveTable(const UnknownForce& force, const ForceCurve& curve) {
+/// A function of one quantity where the recordings say more of it than was assumed before.
+DataTable makeCurveTable(const ForceCurve& curve) {
   constexpr double kKnown = 0.8;  // of the standard deviation before
-  constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
-  const Index rows = force.mayBe(curve) ? curve.at.size() : 0;
   DataTable table;
-  table.add("at", toVector(curve.at.head(rows)));
-  for (const auto& [name, values] : listCurveColumns(curve)) {
-    std::vector<double> known;
-    for (Index i = 0; i < rows; ++i) {
-      known.push_back(curve.stddev[i] < kKnown * curve.prior_stddev ? values[i] : kGap);
+  table.add("at", toVector(curve.at));
+  for (auto [name, values] : listCurveColumns(curve)) {
+    for (Index i = 0; i < values.size(); ++i) {
+      if (curve.stddev[i] > kKnown * curve.prior_stddev) {
+        values[i] = std::numeric_limits<double>::quiet_NaN();
+      }
     }
-    table.add(name, known);
+    table.add(name, toVector(values));
   }
   return table;
 }
@@ -145,13 +143,27 @@ Panel makeForcePanel(const std::string& skeleton, const ForcedCoordinate& coordi
   return panel;
 }
 
-Panel makeForceOverPanel(const ForcedCoordinate& coordinate, const std::string& table,
-                         const std::string& term, bool is_speed) {
+/// Over the speed or the position. The function, whose data go to the page, is left out where the recordings
+/// speak against one.
+Panel makeForceOverPanel(const ForcedCoordinate& coordinate, const UnknownForce& force,
+                         const std::string& table, const std::string& term, bool is_speed, Page& page) {
   const std::string quantity = is_speed ? "speed" : "position";
-  Panel panel = makeForcePanel("force-over", coordinate, table, term, {"at each time", "by " + quantity});
+  const ForceCurve& curve = is_speed ? force.over_speed : force.over_position;
+  std::vector<std::string> series{"at each time"}, colors{"var(--quiet)"};
+  if (force.mayBe(curve)) {
+    series.push_back("by " + quantity);
+    colors.push_back(getColor(0));
+    page.tables[table + "-" + quantity] = makeCurveTable(curve);
+  }
+  Panel panel = makeForcePanel("force-over", coordinate, table, term, std::move(series));
+  colors.push_back(getColor(1));
+  panel.values["colors"] = std::move(colors);
   panel.texts["quantity"] = quantity;
   panel.texts["x_title"] = is_speed ? makeLabel(coordinate.name + "_dot", makeSpeedUnit(coordinate))
                                     : makeLabel(coordinate.name, coordinate.getUnit());
+  if (!force.mayBe(curve)) {
+    panel.without.insert("curve");
+  }
   return panel;
 }
 
@@ -179,21 +191,19 @@ void addForceFigures(const DrawnDiagnosis& drawn, const UnknownForce& force, con
   const std::string term = nameTerm(drawn, force);
   const std::string title = "Force on " + coordinate.name + (term.empty() ? "" : " in the place of " + term);
   page.tables[table] = makeForceTable(force);
-  page.tables[table + "-speed"] = makeCurveTable(force, force.over_speed);
-  page.tables[table + "-position"] = makeCurveTable(force, force.over_position);
   if (force.term) {
     page.tables[table + "-term"] = makeTermTable(force);
   }
-  Figure over{
-      table,
-      title + ", over speed and position",
-      "A step over the speed is dry friction, a curve over the position a spring. Points: at each "
-      "time; line: as a function, with its 95 % band. " +
-          describeEvidence(force),
-      table,
-      {makeForceOverPanel(coordinate, table, term, true), makeForceOverPanel(coordinate, table, term, false)},
-      {},
-      2};
+  Figure over{table,
+              title + ", over speed and position",
+              "A step over the speed is dry friction, a curve over the position a spring. Points: at each "
+              "time; line: as a function, with its 95 % band. " +
+                  describeEvidence(force),
+              table,
+              {makeForceOverPanel(coordinate, force, table, term, true, page),
+               makeForceOverPanel(coordinate, force, table, term, false, page)},
+              {},
+              2};
   addRecordingChoice(drawn.names, over);
   addFigure(std::move(over), section);
   Figure over_time{table + "-time",
