@@ -90,6 +90,7 @@ struct Diagnosis {
   std::size_t found = 0;         ///< of the steps, the first ones, that added terms to `corrected`
   std::vector<FoundTerm> terms;  ///< those of `corrected`, in their order
   ExperimentSpec corrected;      ///< with them, as further parameters
+  NoiseSpec noise;               ///< of `corrected`, its unknown sizes as the residual has them
   AveragedEstimate averaged;     ///< over the terms that are tied with the last one found, it among them
   ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
@@ -111,10 +112,11 @@ constexpr double kTiedEvidence = 3.0;
 /// first with any other. Terms that later ones make superfluous are dropped, and those that stood in for
 /// others are exchanged (exchangeTerms). Ends where none is significant, after options.max_terms, or after
 /// those accepted. Terms behind which something unexplained remains are kept only where they stand out of
-/// that, too. Throws ExperimentError as scoreCandidates() does and for an accepted term that is not a
-/// candidate or that the parameters take up, std::runtime_error where nothing can be simulated. Cost: two
-/// posteriors and one for each tied term; a simulation with derivatives for all candidates a step, and some
-/// 40 for the fits.
+/// that, too. Sizes of noise that are unknown are those of the residual, estimated again with what is
+/// found until that stays. Throws ExperimentError as scoreCandidates() does and for an accepted term that is
+/// not a candidate or that the parameters take up, std::runtime_error where nothing can be simulated. Cost:
+/// two posteriors and one for each tied term; a simulation with derivatives for all candidates a step, and
+/// some 40 for the fits.
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options);
 

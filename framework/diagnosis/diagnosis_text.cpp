@@ -60,6 +60,19 @@ std::string describeFit(const ExplainedFit& fit) {
                      fit.isExplained() ? "explained by the noise" : "model_mismatch");
 }
 
+std::string describeNoise(const Diagnosis& diagnosis) {
+  std::string text;
+  const std::vector<OutputNoiseSpec>& stated = diagnosis.corrected.noise.stddev;
+  for (std::size_t i = 0; i < stated.size(); ++i) {
+    if (stated[i].stddev.unknown) {
+      text +=
+          fmt::format("{}{} ({})", text.empty() ? "Noise as the residual has it: sd " : ", ",
+                      toShortText(diagnosis.noise.stddev[i].stddev, kStddevFigures + 1), stated[i].name.text);
+    }
+  }
+  return text;
+}
+
 std::string describeRemainder(const Remainder& remainder) {
   return fmt::format("What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}).",
                      remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
@@ -148,6 +161,8 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number, double l
 std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
   const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
   std::string text = fmt::format("{}: {}\n", source, describeFit(diagnosis.before));
+  const std::string noise = describeNoise(diagnosis);
+  text += noise.empty() ? "" : noise + "\n";
   for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
     if (!diagnosis.steps[i].ranked.empty()) {
       text += describeStep(diagnosis.steps[i], i + 1, diagnosis.level) +

@@ -11,6 +11,9 @@ namespace twinmap {
 /// "chi-square 210 of 197 degrees of freedom, explained by the noise".
 std::string describeFit(const ExplainedFit& fit);
 
+/// "Noise as the residual has it: sd 0.0002 (x)", of outputs whose noise is unknown; "" without such.
+std::string describeNoise(const Diagnosis& diagnosis);
+
 /// What a step found, in lines. level: Diagnosis::level.
 std::string describeStep(const DiagnosisStep& step, std::size_t number, double level);
 

@@ -153,8 +153,10 @@ class ForceEstimator {
                  std::size_t count)
       : diagnosis_(diagnosis),
         motion_(motion),
-        p_(static_cast<Index>(diagnosis.corrected.model.parameters.size())) {
-    const ExperimentSpec& experiment = diagnosis.corrected;
+        p_(static_cast<Index>(diagnosis.corrected.model.parameters.size())),
+        experiment_(diagnosis.corrected) {
+    experiment_.noise = diagnosis.noise;
+    const ExperimentSpec& experiment = experiment_;
     const VectorXd& point = diagnosis.after.posterior.best;
     covariance_ = calcFitCovariance(linearizeScaled(RecordingsProblem(experiment, recordings), point));
     const RecordedFeatures drawn = takeFirst(recordings, count);
@@ -252,6 +254,7 @@ class ForceEstimator {
   const Diagnosis& diagnosis_;
   const FitMotion& motion_;
   const Index p_;
+  ExperimentSpec experiment_;
   MatrixXd covariance_;  // of all unknown parameters, in half-widths
   VectorXd fine_times_;
   std::optional<LinearFit> together_;

@@ -54,6 +54,8 @@ Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment
   if (diagnosis.found > 0) {
     section.html += makeParagraph("With what is missing: " + describeFit(diagnosis.after) + ".");
   }
+  const std::string noise = describeNoise(diagnosis);
+  section.html += noise.empty() ? "" : makeParagraph(noise + ".");
   if (!diagnosis.after.isExplained()) {
     section.html +=
         makeLines(std::string(diagnosis.getStatus()) + ": " + describeNotice(Notice::kModelIncomplete));

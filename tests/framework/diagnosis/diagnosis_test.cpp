@@ -119,10 +119,32 @@ TEST(Diagnosis, WidensIntervalsByWhatRemains) {
   }
 }
 
+// The residual's size is the noise's, with friction first and then without.
+TEST(Diagnosis, FindsWhatIsMissingWhereTheSizeOfTheNoiseIsUnknown) {
+  const std::vector<std::string> unknown{"noise.stddev.x=unknown"};
+  const Diagnosis diagnosis = diagnoseCart({measureCart(kWithFriction)}, {}, unknown);
+  EXPECT_EQ(diagnosis.listTerms(), std::vector<std::string>{"coulomb.x"});
+  const double stddev = loadExperiment(kCart).noise.stddev[0].stddev;
+  EXPECT_NEAR(diagnosis.noise.stddev[0].stddev / stddev, 1.0, 0.25);  // of 100 samples 3.5 sds
+  EXPECT_TRUE(diagnosis.corrected.noise.stddev[0].stddev.unknown);
+  EXPECT_NE(makeDiagnosisTable(diagnosis, "m.csv").find("Noise as the residual has it: sd "),
+            std::string::npos);
+  const Diagnosis sound = diagnoseCart({measureCart(kSound)}, {}, unknown);
+  EXPECT_EQ(sound.found, 0U);
+  EXPECT_NEAR(sound.noise.stddev[0].stddev / stddev, 1.0, 0.25);
+}
+
 TEST(Diagnosis, RefusesTermsThatTheParametersTakeUp) {
   for (const char* term : {"damping.x", "nonsense.x"}) {
     EXPECT_THROW(diagnoseCart({measureCart(kSound)}, {term}), ExperimentError) << term;
   }
+}
+
+TEST(BlindSpots, NeedTheSizeOfTheNoise) {
+  const ExperimentSpec experiment = loadExperiment(kCart, {"noise.stddev.x=unknown"});
+  const ResponseLayout layout = makeLayout(experiment);
+  const VectorXd none = VectorXd::Zero(makeExtractor(experiment, layout).getFeatureCount());
+  EXPECT_THROW(calcBlindSpots(experiment, {layout, {none}, {}}, 0.01), ExperimentError);
 }
 
 // Drag of the size that is noticed: z is then 1.645 above the critical one, by the linear model.
