@@ -97,6 +97,19 @@ DataTable makeForceTable(const UnknownForce& force) {
   return table.make();
 }
 
+/// The force without the samples at which the speed jumps, as at a bounce: a line would cross the picture
+/// there.
+VectorXd cutAtJumps(const VectorXd& force, const VectorXd& speed) {
+  constexpr double kJump = 0.2;  // of the range: 1001 samples of 60 periods change by less
+  VectorXd cut = force;
+  for (Index i = 1; i < speed.size(); ++i) {
+    if (std::abs(speed[i] - speed[i - 1]) > kJump * (speed.maxCoeff() - speed.minCoeff())) {
+      cut[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  return cut;
+}
+
 /// Of the term, likewise.
 DataTable makeTermTable(const UnknownForce& force) {
   RecordingTable table;
@@ -105,7 +118,7 @@ DataTable makeTermTable(const UnknownForce& force) {
     table.add(k, {{"time", one.fine_times},
                   {"position", one.fine.position},
                   {"speed", one.fine.speed},
-                  {"force", one.term_force}});
+                  {"force", cutAtJumps(one.term_force, one.fine.speed)}});
   }
   return table.make();
 }
@@ -167,6 +180,12 @@ Panel makeForceOverPanel(const ForcedCoordinate& coordinate, const UnknownForce&
   return panel;
 }
 
+/// Whether the recordings ask for a force at all.
+bool isAskedFor(const UnknownForce& force) {
+  return force.term || force.getEvidenceOverTime() > 0.0 || force.mayBe(force.over_speed) ||
+         force.mayBe(force.over_position);
+}
+
 std::string describeEvidence(const UnknownForce& force) {
   const auto write = [](double evidence) {
     return std::isfinite(evidence) ? fmt::format("{:.1f}", evidence) : std::string("-");
@@ -176,8 +195,7 @@ std::string describeEvidence(const UnknownForce& force) {
       "changes with time as it likes; a difference of 3 is 20 to 1.",
       write(force.over_speed.log_evidence), write(force.over_position.log_evidence),
       write(force.getEvidenceOverTime()));
-  if (force.getEvidenceOverTime() <= 0.0 && !force.mayBe(force.over_speed) &&
-      !force.mayBe(force.over_position)) {
+  if (!isAskedFor(force)) {
     text += " The recordings ask for none.";
   } else if (!force.mayBe(force.over_speed) || !force.mayBe(force.over_position)) {
     text += " A function that this speaks against is not drawn.";
@@ -215,6 +233,26 @@ void addForceFigures(const DrawnDiagnosis& drawn, const UnknownForce& force, con
                    1};
   addRecordingChoice(drawn.names, over_time);
   addFigure(std::move(over_time), section);
+}
+
+/// Beside what the forces stand that are drawn.
+template <class IsDrawn>
+std::string describeForces(const std::vector<UnknownForce>& forces, const IsDrawn& isDrawn) {
+  const bool has_term = !forces.empty() && forces.front().term;
+  const bool has_other = std::any_of(
+      forces.begin(), forces.end(), [&](const UnknownForce& force) { return !force.term && isDrawn(force); });
+  std::string html;
+  if (has_term) {
+    html += makeParagraph(
+        "In the place of a term that was found: what the recordings ask for there, whatever its law, beside "
+        "the model with the other terms and with the parameters of the fit with all of them.");
+  }
+  if (has_other) {
+    html += makeParagraph(fmt::format(
+        "{} model, whose parameters are free and take up what they can.",
+        has_term ? "Without a term: beside the corrected" : "What the recordings ask for beside the"));
+  }
+  return html;
 }
 
 // ---- Residuals
@@ -270,9 +308,20 @@ Panel makeResidualOverPanel(const DrawnDiagnosis& drawn, const std::string& tabl
   return panel;
 }
 
+/// The number of the coordinate that an output measures, or else the first.
+std::size_t findOwnCoordinate(const DrawnDiagnosis& drawn, std::size_t output) {
+  const OutputSpec& spec = drawn.diagnosis.corrected.model.outputs[output];
+  const std::optional<Name>& name = spec.coordinate ? spec.coordinate : spec.speed;
+  const std::vector<ForcedCoordinate>& coordinates = drawn.motion.getCoordinates();
+  const auto own = std::find_if(coordinates.begin(), coordinates.end(),
+                                [&](const ForcedCoordinate& one) { return name && one.name == name->text; });
+  return own == coordinates.end() ? 0 : static_cast<std::size_t>(own - coordinates.begin());
+}
+
 /// Over the coordinate that the reader chooses, and its speed.
-void addMotionPanels(const DrawnDiagnosis& drawn, const std::string& table, const std::string& output,
+void addMotionPanels(const DrawnDiagnosis& drawn, std::size_t number, const std::string& table,
                      Figure& figure) {
+  const std::string& output = drawn.recordings.layout.output_names[number];
   const std::vector<ForcedCoordinate>& coordinates = drawn.motion.getCoordinates();
   if (coordinates.empty()) {
     return;
@@ -288,7 +337,7 @@ void addMotionPanels(const DrawnDiagnosis& drawn, const std::string& table, cons
   figure.panels.push_back(makeResidualOverPanel(drawn, table, output, "position_" + q, label));
   figure.panels.push_back(makeResidualOverPanel(drawn, table, output, "speed_" + q, speed));
   if (has_choice) {
-    Choice choice{"coordinate", "over", {}, 0};
+    Choice choice{"coordinate", "over", {}, findOwnCoordinate(drawn, number)};
     for (const ForcedCoordinate& one : coordinates) {
       choice.options.push_back({one.name, makeLabel(one.name, one.getUnit()), {}});
     }
@@ -307,7 +356,7 @@ Figure makeResidualFigure(const DrawnDiagnosis& drawn, std::size_t output, const
                  makeResidualPanel(drawn, "residual-spectra", table + "-spectra", name)},
                 {},
                 2};
-  addMotionPanels(drawn, table, name, figure);
+  addMotionPanels(drawn, output, table, figure);
   addRecordingChoice(drawn.names, figure);
   return figure;
 }
@@ -316,20 +365,19 @@ Figure makeResidualFigure(const DrawnDiagnosis& drawn, std::size_t output, const
 
 Section makeForceSection(const DrawnDiagnosis& drawn, const std::vector<UnknownForce>& forces, Page& page) {
   Section section{"forces", "Unknown forces", "", {}};
-  const bool has_term = !forces.empty() && forces.front().term;
-  const bool has_other = forces.empty() || !forces.back().term;
-  if (has_term) {
-    section.html += makeParagraph(
-        "In the place of a term that was found: what the recordings ask for there, whatever its law, beside "
-        "the model with the other terms and with the parameters of the fit with all of them.");
-  }
-  if (has_other) {
-    section.html += makeParagraph(fmt::format(
-        "{} model, whose parameters are free and take up what they can.",
-        has_term ? "Without a term: beside the corrected" : "What the recordings ask for beside the"));
-  }
+  const bool is_any = std::any_of(forces.begin(), forces.end(), &isAskedFor);
+  const auto isDrawn = [&](const UnknownForce& force) { return !is_any || isAskedFor(force); };
+  section.html = describeForces(forces, isDrawn);
+  std::string none;
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    addForceFigures(drawn, forces[i], "force-" + std::to_string(i), page, section);
+    if (isDrawn(forces[i])) {
+      addForceFigures(drawn, forces[i], "force-" + std::to_string(i), page, section);
+    } else {
+      none += (none.empty() ? "" : ", ") + drawn.motion.getCoordinates()[forces[i].coordinate].name;
+    }
+  }
+  if (!none.empty()) {
+    section.html += makeParagraph("Not drawn, as the recordings ask for no force there: " + none + ".");
   }
   return section;
 }
