@@ -101,6 +101,20 @@ Section makeParameters(const Diagnosis& diagnosis) {
 
 }  // namespace
 
+std::vector<std::string> nameRecordings(const std::vector<std::string>& files,
+                                        const std::vector<double>& starts) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    for (const double start : starts) {
+      names.push_back(fmt::format("{}, from {} s", file, toShortText(start, 6)));
+    }
+    if (starts.empty()) {
+      names.push_back(file);
+    }
+  }
+  return names;
+}
+
 std::string makeDiagnosisPage(const Diagnosis& diagnosis, const ExperimentSpec& experiment,
                               const RecordedFeatures& recordings, const std::vector<std::string>& names) {
   const FitMotion motion(diagnosis, experiment, recordings);

@@ -24,20 +24,6 @@ void printBlindSpots(const DiagnoseArguments& arguments, const MeasurementReader
                                 : makeBlindSpotTable(spots, parameters));
 }
 
-/// In the order of readRecordings().
-std::vector<std::string> nameRecordings(const DiagnoseArguments& arguments) {
-  std::vector<std::string> names;
-  for (const std::string& file : arguments.files) {
-    for (const double start : arguments.starts) {
-      names.push_back(fmt::format("{}, from {:g} s", file, start));
-    }
-    if (arguments.starts.empty()) {
-      names.push_back(file);
-    }
-  }
-  return names;
-}
-
 }  // namespace
 
 void diagnose(const DiagnoseArguments& arguments) {
@@ -68,7 +54,7 @@ void diagnose(const DiagnoseArguments& arguments) {
   }
   if (!arguments.page.empty()) {
     writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, reader.getExperiment(), recordings,
-                                                    nameRecordings(arguments)));
+                                                    nameRecordings(arguments.files, arguments.starts)));
   }
 }
 
