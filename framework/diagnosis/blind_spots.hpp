@@ -15,7 +15,8 @@ struct BlindSpot {
   Eigen::VectorXd shifts{};  ///< p: how far the parameters have moved by then, in sds
 };
 
-/// Of all candidates at the centre of the box; by the linear model.
+/// Of all candidates at the centre of the box; by the linear model. Throws ExperimentError where the size of
+/// the noise is unknown.
 std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                       double level);
 

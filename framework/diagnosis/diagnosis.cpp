@@ -6,6 +6,7 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
+#include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/diagnosis/second_test.hpp"
 #include "framework/diagnosis/term_exchange.hpp"
@@ -274,9 +275,7 @@ class Diagnoser {
       diagnosis.after = diagnosis.before;
     }
     diagnosis.corrected = fits_[diagnosis.found].experiment;
-    for (const FoundTerm& term : fits_[diagnosis.found].terms) {
-      diagnosis.terms.push_back(term.candidate.term);
-    }
+    diagnosis.terms = fits_[diagnosis.found].terms;
     average(diagnosis);
     if (!diagnosis.after.isExplained()) {
       diagnosis.remainder =
@@ -292,6 +291,27 @@ class Diagnoser {
   Index shared_ = 0;                           // parameters of the machine, before any term
 };
 
+NoiseSpec sizeNoiseBy(const ExplainedFit& fit, const ExperimentSpec& experiment, const NoiseSpec& used,
+                      const RecordedFeatures& recordings) {
+  const std::vector<FeatureInfo> infos = RecordingsProblem(experiment, recordings).listInfos();
+  return sizeNoise(experiment.noise, {used, fit.posterior.residual, fit.posterior.degrees, infos},
+                   recordings.layout.output_names);
+}
+
+/// With the noise that is left by what was found: as long as more is found.
+void diagnoseAgain(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                   const DiagnosisOptions& options, ExperimentSpec& sized, Diagnosis& diagnosis) {
+  constexpr int kRounds = 4;  // at most three terms are found, mostly at once
+  for (int round = 0; round < kRounds && diagnosis.found > 0; ++round) {
+    const std::vector<std::string> before = diagnosis.listTerms();
+    sized.noise = sizeNoiseBy(diagnosis.after, experiment, sized.noise, recordings);
+    diagnosis = Diagnoser(recordings, options).run(sized);
+    if (diagnosis.listTerms() == before) {
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 MatrixXd AveragedEstimate::calcQuantiles(const VectorXd& probabilities) const {
@@ -302,10 +322,31 @@ const char* Diagnosis::getStatus() const {
   return getNotice(after.isExplained() ? Notice::kOk : Notice::kModelIncomplete).name;
 }
 
+std::vector<std::string> Diagnosis::listTerms() const {
+  std::vector<std::string> names;
+  for (const FoundTerm& term : terms) {
+    names.push_back(term.candidate.term);
+  }
+  return names;
+}
+
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options) {
   requireSystem(experiment);
-  return Diagnoser(recordings, options).run(experiment);
+  ExperimentSpec sized = experiment;
+  if (hasUnknownNoise(experiment.noise)) {
+    const RecordingsProblem problem(experiment, recordings);
+    const MatrixXd none(static_cast<Index>(problem.getUnknown().size()), 0);
+    sized.noise =
+        sizeNoiseBy(explain(problem, none, options.posterior), experiment, experiment.noise, recordings);
+  }
+  Diagnosis diagnosis = Diagnoser(recordings, options).run(sized);
+  if (hasUnknownNoise(experiment.noise)) {
+    diagnoseAgain(experiment, recordings, options, sized, diagnosis);
+  }
+  diagnosis.noise = sized.noise;
+  diagnosis.corrected.noise = experiment.noise;
+  return diagnosis;
 }
 
 }  // namespace twinmap

@@ -55,6 +55,12 @@ struct DiagnosisStep {
   bool found = false;                      ///< whether the first one is missing
 };
 
+/// A term of a model that was found, its coefficient and own scales the parameters from `first` on.
+struct FoundTerm {
+  TermCandidate candidate;
+  Eigen::Index first = 0;
+};
+
 /// How well an experiment explains the recordings, and what it says of the parameters.
 struct ExplainedFit {
   SimulatorPosterior posterior;
@@ -80,17 +86,21 @@ struct Diagnosis {
   std::size_t shared = 0;  ///< parameters of the machine before any term, the first of `corrected`
   ExplainedFit before;
   std::vector<DiagnosisStep>
-      steps;                       ///< those that found a term, then the one that found none, if it was made
-  std::size_t found = 0;           ///< of the steps, the first ones, that added terms to `corrected`
-  std::vector<std::string> terms;  ///< those of `corrected`, in their order
-  ExperimentSpec corrected;        ///< with them, as further parameters
-  AveragedEstimate averaged;       ///< over the terms that are tied with the last one found, it among them
-  ExplainedFit after;              ///< that of `corrected`; `before` where nothing was found
+      steps;                     ///< those that found a term, then the one that found none, if it was made
+  std::size_t found = 0;         ///< of the steps, the first ones, that added terms to `corrected`
+  std::vector<FoundTerm> terms;  ///< those of `corrected`, in their order
+  ExperimentSpec corrected;      ///< with them, as further parameters
+  NoiseSpec noise;               ///< of `corrected`, its unknown sizes as the residual has them
+  AveragedEstimate averaged;     ///< over the terms that are tied with the last one found, it among them
+  ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;
 
   /// "ok", or "model_incomplete" where something is left unexplained.
   const char* getStatus() const;
+
+  /// The names of the terms.
+  std::vector<std::string> listTerms() const;
 };
 
 /// Terms whose evidences differ by less are tied: 20 to 1.
@@ -102,10 +112,11 @@ constexpr double kTiedEvidence = 3.0;
 /// first with any other. Terms that later ones make superfluous are dropped, and those that stood in for
 /// others are exchanged (exchangeTerms). Ends where none is significant, after options.max_terms, or after
 /// those accepted. Terms behind which something unexplained remains are kept only where they stand out of
-/// that, too. Throws ExperimentError as scoreCandidates() does and for an accepted term that is not a
-/// candidate or that the parameters take up, std::runtime_error where nothing can be simulated. Cost: two
-/// posteriors and one for each tied term; a simulation with derivatives for all candidates a step, and some
-/// 40 for the fits.
+/// that, too. Sizes of noise that are unknown are those of the residual, estimated again with what is
+/// found until that stays. Throws ExperimentError as scoreCandidates() does and for an accepted term that is
+/// not a candidate or that the parameters take up, std::runtime_error where nothing can be simulated. Cost:
+/// two posteriors and one for each tied term; a simulation with derivatives for all candidates a step, and
+/// some 40 for the fits.
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options);
 

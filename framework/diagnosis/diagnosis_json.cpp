@@ -6,6 +6,7 @@
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/remainder/residual_noise.hpp"
 
 namespace twinmap {
 
@@ -93,6 +94,18 @@ Json makeFitJson(const ExplainedFit& fit, const std::vector<ParameterSpec>& para
   return json;
 }
 
+/// The noise of outputs for which it is unknown.
+Json makeNoiseJson(const Diagnosis& diagnosis) {
+  Json json = Json::object();
+  const std::vector<OutputNoiseSpec>& stated = diagnosis.corrected.noise.stddev;
+  for (std::size_t i = 0; i < stated.size(); ++i) {
+    if (stated[i].stddev.unknown) {
+      json[stated[i].name.text] = diagnosis.noise.stddev[i].stddev.value;
+    }
+  }
+  return json;
+}
+
 Json makeRemainderJson(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
   Json json{{"what", remainder.what},
             {"sd", remainder.stddev},
@@ -115,7 +128,7 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
   Json json{{"source", source},
             {"status", diagnosis.getStatus()},
             {"level", diagnosis.level},
-            {"found", diagnosis.terms},
+            {"found", diagnosis.listTerms()},
             {"complete", diagnosis.after.isExplained()},
             {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
@@ -130,6 +143,9 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
                                                      {"upper", quantiles(i, 1)},
                                                      {"unit", parameters[p].unit}};
     }
+  }
+  if (hasUnknownNoise(diagnosis.corrected.noise)) {
+    json["noise"] = makeNoiseJson(diagnosis);
   }
   if (diagnosis.remainder) {
     json["remainder"] = makeRemainderJson(*diagnosis.remainder, parameters);

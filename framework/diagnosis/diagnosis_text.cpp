@@ -17,13 +17,14 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int kFigureDigits = 4, kStddevFigures = 2, kEstimateDigits = 6;
-/// Candidates that a table shows beside those that are tied.
-constexpr std::size_t kShownRivals = 4;
 
-std::string describeFit(const ExplainedFit& fit) {
-  return fmt::format("chi-square {} of {:.0f} degrees of freedom, {}",
-                     toShortText(fit.posterior.chi_square, kFigureDigits), fit.posterior.degrees,
-                     fit.isExplained() ? "explained by the noise" : "model_mismatch");
+/// "; speed at which friction sets in s = 0.01 m/s"
+std::string describeOwnScales(const TermCandidate& candidate) {
+  std::string text;
+  for (const OwnScale& scale : candidate.own_scales) {
+    text += fmt::format("; {} {} {}", scale.meaning, toShortText(scale.value, 3), scale.unit);
+  }
+  return text;
 }
 
 /// "k -3.2, d +41": the parameters that move by more than half a standard deviation, or "none".
@@ -39,19 +40,48 @@ std::string describeShifts(const VectorXd& shifts, const std::vector<ParameterSp
   return text.empty() ? "none" : text;
 }
 
-/// "; speed at which friction sets in s = 0.01 m/s"
-std::string describeOwnScales(const TermCandidate& candidate) {
+/// An estimate and its standard deviation, as cells.
+void addEstimate(const VectorXd& mean, const VectorXd& stddev, Index i, std::vector<std::string>& row) {
+  row.push_back(i < mean.size() ? toShortText(mean[i], kEstimateDigits) : "-");
+  row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevFigures + 1) : "-");
+}
+
+/// What is left, and the parameters with it.
+std::string makeRemainderText(const Diagnosis& diagnosis) {
+  return "  " + describeRemainder(*diagnosis.remainder) + " With it:\n" +
+         alignRows(listRemainderRows(diagnosis), 2, "  ");
+}
+
+}  // namespace
+
+std::string describeFit(const ExplainedFit& fit) {
+  return fmt::format("chi-square {} of {:.0f} degrees of freedom, {}",
+                     toShortText(fit.posterior.chi_square, kFigureDigits), fit.posterior.degrees,
+                     fit.isExplained() ? "explained by the noise" : "model_mismatch");
+}
+
+std::string describeNoise(const Diagnosis& diagnosis) {
   std::string text;
-  for (const OwnScale& scale : candidate.own_scales) {
-    text += fmt::format("; {} {} {}", scale.meaning, toShortText(scale.value, 3), scale.unit);
+  const std::vector<OutputNoiseSpec>& stated = diagnosis.corrected.noise.stddev;
+  for (std::size_t i = 0; i < stated.size(); ++i) {
+    if (stated[i].stddev.unknown) {
+      text +=
+          fmt::format("{}{} ({})", text.empty() ? "Noise as the residual has it: sd " : ", ",
+                      toShortText(diagnosis.noise.stddev[i].stddev, kStddevFigures + 1), stated[i].name.text);
+    }
   }
   return text;
 }
 
-/// A row for each of the terms that are tied, and some of those behind them.
-std::string makeTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters) {
-  std::vector<std::vector<std::string>> rows{
-      {"term", "size", "sd", "unit", "z", "explains", "log evidence", "parameters move (sd)"}};
+std::string describeRemainder(const Remainder& remainder) {
+  return fmt::format("What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}).",
+                     remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
+                     toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+}
+
+TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters) {
+  constexpr std::size_t kShownRivals = 4;  // beside those that are tied
+  TextRows rows{{"term", "size", "sd", "unit", "z", "explains", "log evidence", "parameters move (sd)"}};
   const std::size_t shown = std::min(step.ranked.size(), step.tied + kShownRivals);
   for (std::size_t i = 0; i < shown; ++i) {
     const TermFinding& one = step.ranked[i];
@@ -60,11 +90,38 @@ std::string makeTermRows(const DiagnosisStep& step, const std::vector<ParameterS
                     fmt::format("{:+.1f}", one.z), fmt::format("{:.0f} %", 100.0 * one.share),
                     fmt::format("{:.1f}", one.log_evidence), describeShifts(one.shifts, parameters)});
   }
-  return alignRows(rows, 1, "    ");
+  return rows;
 }
 
-std::string describeStep(const DiagnosisStep& step, std::size_t number,
-                         const std::vector<ParameterSpec>& parameters, double level) {
+TextRows listParameterRows(const Diagnosis& diagnosis) {
+  const SimulatorPosterior &before = diagnosis.before.posterior, &after = diagnosis.after.posterior;
+  const AveragedEstimate& averaged = diagnosis.averaged;
+  TextRows rows{{"parameter", "unit", "before", "sd", "after", "sd"}};
+  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
+  const auto shared = static_cast<Index>(diagnosis.shared);
+  for (Index i = 0; i < static_cast<Index>(parameters.size()); ++i) {
+    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
+    rows.push_back({parameter.name.text, parameter.unit});
+    addEstimate(before.mean, before.stddev, i < shared ? i : before.mean.size(), rows.back());
+    const bool is_averaged = i < shared && averaged.isGiven();
+    addEstimate(is_averaged ? averaged.mean : after.mean, is_averaged ? averaged.stddev : after.stddev, i,
+                rows.back());
+  }
+  return rows;
+}
+
+TextRows listRemainderRows(const Diagnosis& diagnosis) {
+  const Remainder& remainder = *diagnosis.remainder;
+  TextRows rows{{"parameter", "unit", "effective", "sd"}};
+  for (Index i = 0; i < remainder.mean.size(); ++i) {
+    const ParameterSpec& parameter = diagnosis.corrected.model.parameters[static_cast<std::size_t>(i)];
+    rows.push_back({parameter.name.text, parameter.unit});
+    addEstimate(remainder.mean, remainder.stddevs, i, rows.back());
+  }
+  return rows;
+}
+
+std::string describeStep(const DiagnosisStep& step, std::size_t number, double level) {
   const TermFinding& best = step.ranked.front();
   std::string text;
   if (step.found) {
@@ -98,55 +155,18 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number,
                     best.p_value < level ? "None that stands out of what remains" : "None", step.tested,
                     calcCriticalZ(level, step.tested), 100.0 * level);
   }
-  return text + makeTermRows(step, parameters);
+  return text;
 }
-
-/// The parameters before and after, and those of the terms.
-std::string makeParameterRows(const Diagnosis& diagnosis) {
-  const SimulatorPosterior &before = diagnosis.before.posterior, &after = diagnosis.after.posterior;
-  const AveragedEstimate& averaged = diagnosis.averaged;
-  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "before", "sd", "after", "sd"}};
-  const auto write = [](const VectorXd& mean, const VectorXd& stddev, Index i,
-                        std::vector<std::string>& row) {
-    row.push_back(i < mean.size() ? toShortText(mean[i], kEstimateDigits) : "-");
-    row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevFigures + 1) : "-");
-  };
-  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
-  const auto shared = static_cast<Index>(diagnosis.shared);
-  for (Index i = 0; i < static_cast<Index>(parameters.size()); ++i) {
-    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
-    rows.push_back({parameter.name.text, parameter.unit});
-    write(before.mean, before.stddev, i < shared ? i : before.mean.size(), rows.back());
-    const bool is_averaged = i < shared && averaged.isGiven();
-    write(is_averaged ? averaged.mean : after.mean, is_averaged ? averaged.stddev : after.stddev, i,
-          rows.back());
-  }
-  return alignRows(rows, 2, "  ");
-}
-
-/// What is left, and the parameters with it.
-std::string describeRemainder(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
-  std::string text = fmt::format(
-      "  What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}). With it:\n",
-      remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
-      toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
-  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "effective", "sd"}};
-  for (Index i = 0; i < remainder.mean.size(); ++i) {
-    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
-    rows.push_back({parameter.name.text, parameter.unit, toShortText(remainder.mean[i], kEstimateDigits),
-                    toShortText(remainder.stddevs[i], kStddevFigures + 1)});
-  }
-  return text + alignRows(rows, 2, "  ");
-}
-
-}  // namespace
 
 std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
   const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
   std::string text = fmt::format("{}: {}\n", source, describeFit(diagnosis.before));
+  const std::string noise = describeNoise(diagnosis);
+  text += noise.empty() ? "" : noise + "\n";
   for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
     if (!diagnosis.steps[i].ranked.empty()) {
-      text += describeStep(diagnosis.steps[i], i + 1, parameters, diagnosis.level);
+      text += describeStep(diagnosis.steps[i], i + 1, diagnosis.level) +
+              alignRows(listTermRows(diagnosis.steps[i], parameters), 1, "    ");
     }
   }
   if (diagnosis.found > 0) {
@@ -155,7 +175,7 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
     if (!diagnosis.after.posterior.isReliable()) {
       text += fmt::format("  No estimate: {}.\n", diagnosis.after.posterior.message);
     }
-    text += makeParameterRows(diagnosis);
+    text += alignRows(listParameterRows(diagnosis), 2, "  ");
     if (diagnosis.steps[diagnosis.found - 1].tied > 1 && diagnosis.averaged.isGiven()) {
       text +=
           "  The parameters are those with each of the terms that are not told apart, weighted by "
@@ -164,7 +184,7 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
   }
   if (!diagnosis.after.isExplained()) {
     text += fmt::format("{}: {}\n", diagnosis.getStatus(), describeNotice(Notice::kModelIncomplete));
-    text += diagnosis.remainder ? describeRemainder(*diagnosis.remainder, parameters) : "";
+    text += diagnosis.remainder ? makeRemainderText(diagnosis) : "";
   }
   return text;
 }

@@ -8,6 +8,30 @@
 
 namespace twinmap {
 
+/// "chi-square 210 of 197 degrees of freedom, explained by the noise".
+std::string describeFit(const ExplainedFit& fit);
+
+/// "Noise as the residual has it: sd 0.0002 (x)", of outputs whose noise is unknown; "" without such.
+std::string describeNoise(const Diagnosis& diagnosis);
+
+/// What a step found, in lines. level: Diagnosis::level.
+std::string describeStep(const DiagnosisStep& step, std::size_t number, double level);
+
+/// "What remains is as a force on x of sd 0.03 N, ...".
+std::string describeRemainder(const Remainder& remainder);
+
+/// Headings, then rows of cells.
+using TextRows = std::vector<std::vector<std::string>>;
+
+/// The terms that are tied, and some of those behind them.
+TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters);
+
+/// The parameters before and after, and those of the terms.
+TextRows listParameterRows(const Diagnosis& diagnosis);
+
+/// The machine's parameters with what remains; where there is a remainder.
+TextRows listRemainderRows(const Diagnosis& diagnosis);
+
 /// For people: how well the model explains the recordings, each term that was found with its rivals, the
 /// parameters before and after, what remains. source: names the recordings.
 std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source);

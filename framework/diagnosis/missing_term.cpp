@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/term_ranking.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
@@ -27,8 +28,17 @@ CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& rec
   const RecordingsProblem problem(experiment, recording);
   const RecordingFit fit = problem.fit(findBest(inferred, problem.getUnknown()));
   const auto residuals = static_cast<double>(recording.features.front().array().isFinite().count());
-  return {experiment, fit.point, fit.chi_square,
-          std::max(1.0, residuals - static_cast<double>(fit.point.size()))};
+  CurrentFit current{experiment, fit.point, fit.chi_square,
+                     std::max(1.0, residuals - static_cast<double>(fit.point.size()))};
+  if (hasUnknownNoise(experiment.noise) && fit.point.size() > 0) {
+    const VectorXd residual = problem.linearize(fit.point).residual;
+    current.experiment.noise =
+        sizeNoise(experiment.noise, {experiment.noise, residual, current.degrees, problem.listInfos()},
+                  recording.layout.output_names);
+    current.chi_square =
+        RecordingsProblem(current.experiment, recording).linearize(fit.point).residual.squaredNorm();
+  }
+  return current;
 }
 
 std::optional<MissingTerm> findMissing(const ExperimentSpec& experiment, const RecordedFeatures& recording,
@@ -42,7 +52,7 @@ std::optional<MissingTerm> findMissing(const ExperimentSpec& experiment, const R
     return {};
   }
   const ScoredCandidates scored =
-      scoreCandidates(experiment, recording, current.point, CandidateKinds::kWithoutStates);
+      scoreCandidates(current.experiment, recording, current.point, CandidateKinds::kWithoutStates);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
   ranked.resize(std::min(ranked.size(), kFitted), RankedTerm{{}});
@@ -56,7 +66,11 @@ std::optional<MissingTerm> findMissing(const ExperimentSpec& experiment, const R
   if (best == nullptr || !(best->finding.log_evidence > 0.0)) {
     return {};
   }
-  const TermFinding& found = best->finding;
+  TermFinding found = best->finding;
+  if (hasUnknownNoise(experiment.noise)) {
+    found.share =
+        1.0 - found.chi_square / current.chi_square;  // what is noise is not known: of the whole residual
+  }
   return MissingTerm{
       found.candidate.term, found.candidate.meaning, found.candidate.unit, found.estimate, found.stddev,
       found.share,          found.log_evidence};

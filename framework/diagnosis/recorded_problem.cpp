@@ -89,6 +89,15 @@ RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vect
   return recordings;
 }
 
+SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                              const VectorXd& point, std::size_t k) {
+  const auto p = static_cast<Index>(experiment.model.parameters.size());
+  const auto own = static_cast<Index>(experiment.model.nuisance.size());
+  SingleRecording single{{recordings.layout, {recordings.features[k]}, recordings.known}, VectorXd(p + own)};
+  single.point << point.head(p), point.segment(p + static_cast<Index>(k) * own, own);
+  return single;
+}
+
 RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
     : simulator_(experiment, recordings.layout) {
   simulator_.requireNoise();

@@ -26,6 +26,16 @@ RecordedFeatures readRecording(const MeasurementReader& reader, const Table& tab
 RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
                                 const std::vector<double>& starts, const std::vector<KnownValue>& known);
 
+/// One of the recordings, and its own unknown parameters.
+struct SingleRecording {
+  RecordedFeatures recording;
+  Eigen::VectorXd point;  ///< the machine's parameters, then its nuisance parameters
+};
+
+/// Number k of the recordings. point: of all unknown parameters (RecordingsProblem).
+SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                              const Eigen::VectorXd& point, std::size_t k);
+
 /// A linear model of all recordings at a point: residual(at + step) ~ residual - jacobian step.
 struct LinearizedRecordings {
   Eigen::VectorXd residual;          ///< n, in noise standard deviations

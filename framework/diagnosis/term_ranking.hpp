@@ -8,12 +8,6 @@
 
 namespace twinmap {
 
-/// A term of a model that was found, its coefficient and own scales the parameters from `first` on.
-struct FoundTerm {
-  TermCandidate candidate;
-  Eigen::Index first = 0;
-};
-
 /// An experiment, its terms, and where it fits the recordings best.
 struct CurrentFit {
   ExperimentSpec experiment;

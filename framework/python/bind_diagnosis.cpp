@@ -1,10 +1,12 @@
 #include <pybind11/stl.h>
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/measured_columns.hpp"
 #include "framework/python/python_map.hpp"
+#include "framework/study/diagnosis/diagnosis_page.hpp"
 
 namespace twinmap::python {
 namespace {
@@ -30,24 +32,32 @@ RecordedFeatures readTables(const MeasurementReader& reader, const std::vector<R
   return all;
 }
 
-/// JSON and text, as `twinmap diagnose` prints them, and the corrected experiment.
+/// JSON and text, as `twinmap diagnose` prints them, and the corrected experiment. page: file for the page,
+/// or
+/// "".
 py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& recordings,
                              const std::vector<double>& starts, const Known& known,
-                             const std::vector<std::string>& accepted) {
+                             const std::vector<std::string>& accepted, const std::string& page) {
   const MeasurementReader& reader = map.getReader();
   const RecordedFeatures read =
       readTables(reader, recordings, starts, collectKnown(reader.getExperiment().model.inputs, known));
   DiagnosisOptions options;
   options.accepted = accepted;
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
+  std::vector<std::string> sources;
+  std::string names;
+  for (const Recorded& one : recordings) {
+    sources.push_back(one.first);
+    names += (names.empty() ? "" : ", ") + one.first;
+  }
   Diagnosis diagnosis;
   {
     const py::gil_scoped_release release;
     diagnosis = diagnose(reader.getExperiment(), read, options);
-  }
-  std::string names;
-  for (const Recorded& one : recordings) {
-    names += (names.empty() ? "" : ", ") + one.first;
+    if (!page.empty()) {
+      writeTextFile(
+          page, makeDiagnosisPage(diagnosis, reader.getExperiment(), read, nameRecordings(sources, starts)));
+    }
   }
   return py::make_tuple(makeDiagnosisJson(diagnosis, names), makeDiagnosisTable(diagnosis, names),
                         writeExperiment(diagnosis.corrected));
@@ -72,7 +82,7 @@ py::tuple findBlindSpots(const PythonMap& map, const Known& known) {
 
 void bindDiagnosis(py::module_& module) {
   module.def("diagnose", &diagnoseRecordings, py::arg("map"), py::arg("recordings"), py::arg("starts"),
-             py::arg("known"), py::arg("accepted"));
+             py::arg("known"), py::arg("accepted"), py::arg("page"));
   module.def("find_blind_spots", &findBlindSpots, py::arg("map"), py::arg("known"));
 }
 

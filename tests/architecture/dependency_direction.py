@@ -33,6 +33,7 @@ ALLOWED = {
         "analysis",
         "store",
         "inference",
+        "diagnosis",
         "results",
         "report",
     },
@@ -72,7 +73,7 @@ ALLOWED = {
 ORDER_WITHIN = {
     "data": ["features", "measurement", "noise", "reduction", "sensitivity"],
     "estimation": ["gp", "surrogate", "network", "refined", "segments", "posterior", "trained"],
-    "study": ["samples", "pipeline", "verification", "replay", "sweep", "shards"],
+    "study": ["samples", "pipeline", "verification", "replay", "diagnosis", "sweep", "shards"],
 }
 
 # Dense linear algebra, and the operations that expressions and recorded programs share, which every room may include.

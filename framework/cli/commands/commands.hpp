@@ -132,6 +132,7 @@ struct DiagnoseArguments {
   std::vector<double> starts;         ///< times in each file that are 0 of the model; empty: the experiment's
   std::vector<std::string> accepted;  ///< terms to take; empty: those that are found
   std::string out;                    ///< file for the corrected experiment; "": none
+  std::string page;                   ///< file for the residuals and the unknown forces; "": none
   bool json = false, csv = false;     ///< at most one; neither: a human-readable table
 };
 

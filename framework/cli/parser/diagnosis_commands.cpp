@@ -44,6 +44,12 @@ void addDiagnose(CLI::App& app) {
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--out", arguments->out, "File for the corrected experiment (YAML)")->type_name("FILE");
+  command
+      ->add_option(
+          "--page", arguments->page,
+          "File for a page (HTML) that draws the residuals and the unknown forces over speed, position "
+          "and time")
+      ->type_name("FILE");
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments->json, "Print a line of JSON")->excludes(csv);
   command->callback([arguments] { diagnose(*arguments); });

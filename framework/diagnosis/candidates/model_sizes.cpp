@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/diagnosis/candidates/observed_motion.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/expression/named_values.hpp"
-#include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/make_simulator.hpp"
 
 namespace twinmap {
 
@@ -21,19 +19,6 @@ namespace {
 
 /// Samples of the simulation: some tens in the shortest period that matters.
 constexpr Index kSizeSamples = 1001;
-
-std::vector<CoordinateSizes> listForcedCoordinates(const SystemSpec& system) {
-  std::vector<CoordinateSizes> coordinates;
-  for (const BodySpec& body : system.bodies) {
-    const JointCoordinates& joint = getJointCoordinates(body.joint.type);
-    for (std::size_t i = 0; i < joint.size(); ++i) {
-      if (joint[i].takes_forces) {
-        coordinates.push_back({body.joint.coordinates[i].text, joint[i].kind == CoordinateKind::kRotation});
-      }
-    }
-  }
-  return coordinates;
-}
 
 /// The force of a candidate with a coefficient of 1, at each value of its scale.
 std::vector<std::string> listForces(const CandidateSpec& candidate) {
@@ -49,44 +34,20 @@ std::vector<std::string> listForces(const CandidateSpec& candidate) {
 
 /// The model with each coordinate and its speed as outputs, then those of its own, then the forces of
 /// candidates.
-ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<CoordinateSizes>& coordinates) {
+ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<ForcedCoordinate>& coordinates) {
   const ModelSpec& model = experiment.model;
   ModelSpec observed = model;
   observed.outputs.clear();
-  for (const CoordinateSizes& coordinate : coordinates) {
-    OutputSpec output;
-    output.name = {"coordinate of " + coordinate.name, {}};
-    output.coordinate = Name{coordinate.name, {}};
-    observed.outputs.push_back(output);
-    output.name = {"speed of " + coordinate.name, {}};
-    output.speed = output.coordinate;
-    output.coordinate.reset();
-    observed.outputs.push_back(output);
+  for (const ForcedCoordinate& coordinate : coordinates) {
+    observeMotion(coordinate, observed.outputs);
   }
   observed.outputs.insert(observed.outputs.end(), model.outputs.begin(), model.outputs.end());
   for (const CandidateSpec& candidate : experiment.candidates) {
     for (const std::string& force : listForces(candidate)) {
-      OutputSpec output;
-      output.name = {"force of " + candidate.name.text, {}};
-      output.expression = {force, candidate.force.where};
-      output.unit = "N";
-      observed.outputs.push_back(output);
+      observeForce(candidate.name.text, {force, candidate.force.where}, observed.outputs);
     }
   }
   return observed;
-}
-
-/// Outputs at kSizeSamples times (samples x outputs).
-MatrixXd simulateOutputs(const ModelSpec& model, const VectorXd& point) {
-  const VectorXd times = VectorXd::LinSpaced(kSizeSamples, 0.0, model.simulation.duration);
-  const std::unique_ptr<Simulator> simulator = makeTrustedSimulator(model, times);
-  MatrixXd response(simulator->getLayout().getRowCount(), 1);
-  SampleStatus status;
-  simulator->simulate(point, response, &status);
-  if (!status.ok) {
-    throw std::runtime_error("the best fit cannot be simulated again: " + status.reason);
-  }
-  return response.reshaped(kSizeSamples, static_cast<Index>(model.outputs.size()));
 }
 
 NamedValues<double> nameValues(const ModelSpec& model, const VectorXd& point) {
@@ -125,11 +86,11 @@ void setBodySizes(const ModelSpec& model, const NamedValues<double>& names, Mode
 }
 
 /// Of the coordinates that move; outputs: each one and its speed.
-void setCoordinateSizes(const std::vector<CoordinateSizes>& forced, const MatrixXd& outputs, double duration,
+void setCoordinateSizes(const std::vector<ForcedCoordinate>& forced, const MatrixXd& outputs, double duration,
                         ModelSizes& sizes) {
   const double interval = duration / static_cast<double>(kSizeSamples - 1);
   for (std::size_t i = 0; i < forced.size(); ++i) {
-    CoordinateSizes coordinate = forced[i];
+    CoordinateSizes coordinate{forced[i].name, forced[i].is_angle};
     const auto column = static_cast<Index>(2 * i);
     const VectorXd speed = outputs.col(column + 1);
     const VectorXd acceleration = (speed.tail(kSizeSamples - 1) - speed.head(kSizeSamples - 1)) / interval;
@@ -149,8 +110,9 @@ ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& poin
   const ModelSpec& model = experiment.model;
   ModelSizes sizes;
   setBodySizes(model, nameValues(model, point), sizes);
-  const std::vector<CoordinateSizes> forced = listForcedCoordinates(model.system);
-  const MatrixXd outputs = simulateOutputs(observeSizes(experiment, forced), point);
+  const std::vector<ForcedCoordinate> forced = listForcedCoordinates(model.system);
+  const VectorXd times = VectorXd::LinSpaced(kSizeSamples, 0.0, model.simulation.duration);
+  const MatrixXd outputs = simulateOutputs(observeSizes(experiment, forced), times, point);
   setCoordinateSizes(forced, outputs, model.simulation.duration, sizes);
   auto column = static_cast<Index>(2 * forced.size());
   for (std::size_t o = 0; o < model.outputs.size(); ++o) {

@@ -7,7 +7,6 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
-#include "framework/experiment/model/joint_type.hpp"
 
 namespace twinmap {
 
@@ -17,42 +16,32 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Knots of a force: a simulation with derivatives along each.
-constexpr int kForceKnots = 40;
+/// Knots of a force, and those that are simulated together: a derivative along each.
+constexpr Index kForceKnots = 40;
 constexpr Index kOutputKnots = 160;
 
-/// A force on a coordinate that is 1 at a knot and 0 at its neighbours.
-TermCandidate makeKnotForce(const std::string& coordinate, double at, double interval, int number) {
+/// A force on a coordinate, by its expression.
+TermCandidate makeForceCandidate(const std::string& coordinate, const std::string& force) {
   TermCandidate candidate;
-  candidate.term = fmt::format("knot{}.{}", number, coordinate);
-  candidate.size = 1.0;
-  candidate.add = [coordinate, at, interval](ModelSpec& model, const std::string& coefficient,
-                                             const std::vector<std::string>&) {
+  candidate.term = "process." + coordinate;
+  candidate.add = [coordinate, force](ModelSpec& model, const std::string& coefficient,
+                                      const std::vector<std::string>&) {
     ForceLaw<Expression> law;
     law.coordinate = {coordinate, {}};
-    law.force = {fmt::format("{}*max(0, 1 - abs(t - {})/{})", coefficient, toText(at), toText(interval)), {}};
+    law.force = {fmt::format("{}*({})", coefficient, force), {}};
     model.system.elements.get<ForceLaw>().push_back(law);
   };
   return candidate;
 }
 
-ProcessEffect calcForceEffect(const ExperimentSpec& experiment, const RecordedFeatures& recording,
-                              const VectorXd& point, const std::string& coordinate, bool is_angle) {
-  const double duration = experiment.model.simulation.duration;
-  ProcessEffect effect{"a force on " + coordinate,
-                       is_angle ? "N m" : "N",
-                       VectorXd::LinSpaced(kForceKnots, 0.0, duration),
-                       {}};
-  std::vector<TermCandidate> knots;
-  for (int k = 0; k < kForceKnots; ++k) {
-    knots.push_back(makeKnotForce(coordinate, effect.knots[k], effect.knots[1], k));
-  }
-  const AugmentedExperiment all = addAll(experiment, knots);
+/// The derivatives of all residuals along coefficients of forces that are not there.
+MatrixXd calcDerivatives(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                         const VectorXd& point, const std::vector<TermCandidate>& forces) {
+  const AugmentedExperiment all = addAll(experiment, forces);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
-  effect.responses = RecordingsProblem(all.experiment, recording)
-                         .linearize(insertAdded(point, p, VectorXd::Zero(all.added)))
-                         .jacobian.middleCols(p, all.added);
-  return effect;
+  return RecordingsProblem(all.experiment, recordings)
+      .linearize(insertAdded(point, p, VectorXd::Zero(all.added)))
+      .jacobian.middleCols(p, all.added);
 }
 
 ProcessEffect calcOutputEffect(const std::vector<FeatureInfo>& infos, int output, const std::string& name,
@@ -79,23 +68,43 @@ ProcessEffect calcOutputEffect(const std::vector<FeatureInfo>& infos, int output
 
 }  // namespace
 
+ProcessEffect calcForceEffect(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                              const VectorXd& point, const ForcedCoordinate& coordinate,
+                              const std::string& quantity, const VectorXd& knots) {
+  ProcessEffect effect{"a force on " + coordinate.name, coordinate.getForceUnit(), knots, {}};
+  const double interval = knots[1] - knots[0];
+  for (Index first = 0; first < knots.size(); first += kForceKnots) {
+    const Index count = std::min(kForceKnots, knots.size() - first);
+    std::vector<TermCandidate> forces;
+    for (Index k = first; k < first + count; ++k) {
+      forces.push_back(makeForceCandidate(
+          coordinate.name,
+          fmt::format("max(0, 1 - abs({} - ({}))/{})", quantity, toText(knots[k]), toText(interval))));
+    }
+    const MatrixXd derivatives = calcDerivatives(experiment, recordings, point, forces);
+    effect.responses.conservativeResize(derivatives.rows(), first + count);
+    effect.responses.rightCols(count) = derivatives;
+  }
+  return effect;
+}
+
+VectorXd calcForceEffect(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                         const VectorXd& point, const ForcedCoordinate& coordinate, const Expression& force) {
+  return calcDerivatives(experiment, recordings, point, {makeForceCandidate(coordinate.name, force.text)});
+}
+
 std::vector<ProcessEffect> listProcessEffects(const ExperimentSpec& experiment,
                                               const RecordedFeatures& recording, const VectorXd& point,
                                               const std::vector<FeatureInfo>& infos) {
   std::vector<ProcessEffect> effects;
-  for (const BodySpec& body : experiment.model.system.bodies) {
-    const JointCoordinates& joint = getJointCoordinates(body.joint.type);
-    for (std::size_t i = 0; i < joint.size(); ++i) {
-      if (joint[i].takes_forces) {
-        effects.push_back(calcForceEffect(experiment, recording, point, body.joint.coordinates[i].text,
-                                          joint[i].kind == CoordinateKind::kRotation));
-      }
-    }
+  const double duration = experiment.model.simulation.duration;
+  const VectorXd knots = VectorXd::LinSpaced(kForceKnots, 0.0, duration);
+  for (const ForcedCoordinate& coordinate : listForcedCoordinates(experiment.model.system)) {
+    effects.push_back(calcForceEffect(experiment, recording, point, coordinate, "t", knots));
   }
   const std::vector<OutputSpec>& outputs = experiment.model.outputs;
   for (std::size_t o = 0; o < outputs.size(); ++o) {
-    effects.push_back(calcOutputEffect(infos, static_cast<int>(o), outputs[o].name.text,
-                                       experiment.model.simulation.duration));
+    effects.push_back(calcOutputEffect(infos, static_cast<int>(o), outputs[o].name.text, duration));
   }
   return effects;
 }

@@ -204,14 +204,15 @@ class Experiment:
         starts: Sequence[float] = (),
         known: Optional[Mapping[str, float]] = None,
         accept: Sequence[str] = (),
+        page: Optional[PathLike] = None,
     ) -> Diagnosis:
         """Says what the model lacks to explain recordings (docs/how-to/find-what-a-model-lacks.md).
 
         recordings: one or several, as infer() takes them. starts: times in each (s) that are the model's 0. accept: terms
-        to take whatever the tests say. Cost: two posteriors, and one for each term that is tied. Raises MeasurementError
-        and ExperimentError as infer() does.
+        to take whatever the tests say. page: file (HTML) for pictures of the residuals and the unknown forces. Cost: two
+        posteriors, and one for each term that is tied. Raises MeasurementError and ExperimentError as infer() does.
         """
-        return diagnose(self._get_inferring(), recordings, starts, known, accept)
+        return diagnose(self._get_inferring(), recordings, starts, known, accept, page)
 
     def find_blind_spots(self, *, known: Optional[Mapping[str, float]] = None) -> pd.DataFrame:
         """Before any measurement: of each term that the model may lack its unit, the size that is noticed in 95 % of

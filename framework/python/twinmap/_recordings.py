@@ -157,7 +157,15 @@ def diagnose(
     starts: Sequence[float],
     known: Optional[Mapping[str, float]],
     accept: Sequence[str],
+    page: Optional[PathLike],
 ) -> Diagnosis:
     """By a map or an experiment alone (Experiment.diagnose)."""
-    found = _twinmap.diagnose(map_, list_recordings(recordings), list(starts), list_known(known), list(accept))
+    found = _twinmap.diagnose(
+        map_,
+        list_recordings(recordings),
+        list(starts),
+        list_known(known),
+        list(accept),
+        os.fspath(page) if page is not None else "",
+    )
     return Diagnosis(*found)

@@ -5,32 +5,15 @@
 #include <set>
 
 #include "framework/base/text/source_location.hpp"
-#include "framework/data/features/experiment_features.hpp"
-#include "framework/data/noise/noise.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/models/make_simulator.hpp"
-#include "tests/framework/experiment/experiments.hpp"
+#include "tests/framework/diagnosis/measured_cart.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-const VectorXd kTruth = Eigen::Vector3d(95.0, 1.2, 2500.0);
-
-/// The cart with another force law, measured.
-VectorXd measure(const std::string& force, int repeat = 0) {
-  const ExperimentSpec machine = loadExperiment(kCart, {"system.force_laws[0].force=" + force});
-  const ResponseLayout layout = makeLayout(machine);
-  MatrixXd response(layout.getRowCount(), 1);
-  SampleStatus status;
-  makeTrustedSimulator(machine.model, layout.times)->simulate(kTruth, response, &status);
-  const MatrixXd noisy = addNoise(response, ResponseNoise(machine.noise, layout),
-                                  {static_cast<std::uint64_t>(7 + repeat), RandomPurpose::kTestNoise});
-  return makeExtractor(machine, layout).extract(noisy).col(0);
-}
 
 Diagnosis diagnoseCart(const std::vector<VectorXd>& features, const std::vector<std::string>& accepted = {},
                        const std::vector<std::string>& overrides = {}) {
@@ -41,11 +24,13 @@ Diagnosis diagnoseCart(const std::vector<VectorXd>& features, const std::vector<
   return diagnose(experiment, recordings, options);
 }
 
-const char* const kSound = "F - k3*x^3";
-const char* const kWithFriction = "F - k3*x^3 - 0.03*tanh(x_dot/0.01)";
+std::set<std::string> nameTerms(const Diagnosis& diagnosis) {
+  const std::vector<std::string> names = diagnosis.listTerms();
+  return {names.begin(), names.end()};
+}
 
 TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {
-  const Diagnosis diagnosis = diagnoseCart({measure(kSound)});
+  const Diagnosis diagnosis = diagnoseCart({measureCart(kSound)});
   EXPECT_EQ(diagnosis.found, 0U);
   EXPECT_TRUE(diagnosis.after.isExplained());
   ASSERT_EQ(diagnosis.steps.size(), 1U);
@@ -54,7 +39,7 @@ TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {
 }
 
 TEST(Diagnosis, FindsDryFriction) {
-  const Diagnosis diagnosis = diagnoseCart({measure(kWithFriction)});
+  const Diagnosis diagnosis = diagnoseCart({measureCart(kWithFriction)});
   EXPECT_FALSE(diagnosis.before.isExplained());
   ASSERT_EQ(diagnosis.found, 1U);
   EXPECT_EQ(diagnosis.steps[0].ranked[0].candidate.term, "coulomb.x");
@@ -63,21 +48,21 @@ TEST(Diagnosis, FindsDryFriction) {
   EXPECT_NEAR(friction.estimate, 0.03, 4.0 * friction.stddev);
   EXPECT_GT(friction.share, 0.9);
   // the damping had taken up the friction
-  EXPECT_GT(diagnosis.before.posterior.mean[1] - kTruth[1], 5.0 * diagnosis.before.posterior.stddev[1]);
+  EXPECT_GT(diagnosis.before.posterior.mean[1] - kTrueCart[1], 5.0 * diagnosis.before.posterior.stddev[1]);
   for (Eigen::Index i = 0; i < 3; ++i) {
-    EXPECT_NEAR(diagnosis.averaged.mean[i], kTruth[i], 4.0 * diagnosis.averaged.stddev[i]);
+    EXPECT_NEAR(diagnosis.averaged.mean[i], kTrueCart[i], 4.0 * diagnosis.averaged.stddev[i]);
   }
 }
 
 TEST(Diagnosis, ExplainsRecordingsTogether) {
-  const Diagnosis one = diagnoseCart({measure(kWithFriction)});
-  const Diagnosis two = diagnoseCart({measure(kWithFriction), measure(kWithFriction, 1)});
+  const Diagnosis one = diagnoseCart({measureCart(kWithFriction)});
+  const Diagnosis two = diagnoseCart({measureCart(kWithFriction), measureCart(kWithFriction, 1)});
   ASSERT_EQ(two.found, 1U);
   EXPECT_NEAR(two.steps[0].ranked[0].stddev / one.steps[0].ranked[0].stddev, std::sqrt(0.5), 0.1);
 }
 
 TEST(Diagnosis, WritesTheCorrectedExperiment) {
-  const Diagnosis diagnosis = diagnoseCart({measure(kWithFriction)}, {"coulomb.x"});
+  const Diagnosis diagnosis = diagnoseCart({measureCart(kWithFriction)}, {"coulomb.x"});
   const ExperimentSpec read =
       readExperiment(parseExperimentTree(writeExperiment(diagnosis.corrected), "corrected.yaml"));
   ASSERT_EQ(read.model.parameters.size(), 5U);
@@ -87,20 +72,20 @@ TEST(Diagnosis, WritesTheCorrectedExperiment) {
 
 // Friction, and a sensor that reads 0.4 mm too much.
 TEST(Diagnosis, FindsTwoTerms) {
-  const Diagnosis diagnosis = diagnoseCart({(measure(kWithFriction).array() + 4e-4).matrix()});
+  const Diagnosis diagnosis = diagnoseCart({(measureCart(kWithFriction).array() + 4e-4).matrix()});
   EXPECT_TRUE(diagnosis.after.isExplained());
-  const std::set<std::string> found(diagnosis.terms.begin(), diagnosis.terms.end());
+  const std::set<std::string> found = nameTerms(diagnosis);
   EXPECT_EQ(found, (std::set<std::string>{"coulomb.x", "offset.x"}));
   for (Eigen::Index i = 0; i < 3; ++i) {
-    EXPECT_NEAR(diagnosis.averaged.mean[i], kTruth[i], 4.0 * diagnosis.averaged.stddev[i]);
+    EXPECT_NEAR(diagnosis.averaged.mean[i], kTrueCart[i], 4.0 * diagnosis.averaged.stddev[i]);
   }
 }
 
 // Friction and a spring of fifth order: alone, a friction with a bristle explains some of both.
 TEST(Diagnosis, NamesRivalsOfATermThatMayStandInForOthers) {
-  const Diagnosis diagnosis = diagnoseCart({measure("F - k3*x^3 - 0.03*tanh(x_dot/0.01) - 4e5*x^5")});
+  const Diagnosis diagnosis = diagnoseCart({measureCart("F - k3*x^3 - 0.03*tanh(x_dot/0.01) - 4e5*x^5")});
   EXPECT_TRUE(diagnosis.after.isExplained());
-  std::set<std::string> named(diagnosis.terms.begin(), diagnosis.terms.end());
+  std::set<std::string> named = nameTerms(diagnosis);
   EXPECT_EQ(named.size(), 2U);
   EXPECT_TRUE(named.count("quintic_spring.x"));
   for (const DiagnosisStep& step : diagnosis.steps) {
@@ -113,31 +98,53 @@ TEST(Diagnosis, NamesRivalsOfATermThatMayStandInForOthers) {
 
 TEST(Diagnosis, TestsTermsOfTheFile) {
   const std::string force = "F - k3*x^3 + 0.05*sin(9*t^2)";
-  const Diagnosis without = diagnoseCart({measure(force)});
+  const Diagnosis without = diagnoseCart({measureCart(force)});
   EXPECT_STREQ(without.getStatus(), "model_incomplete");
-  const Diagnosis with =
-      diagnoseCart({measure(force)}, {}, {"candidates.sweep={coordinate: x, force: sin(9*t^2), unit: N}"});
+  const Diagnosis with = diagnoseCart({measureCart(force)}, {},
+                                      {"candidates.sweep={coordinate: x, force: sin(9*t^2), unit: N}"});
   EXPECT_STREQ(with.getStatus(), "ok");
-  EXPECT_EQ(with.terms, std::vector<std::string>{"sweep"});
+  EXPECT_EQ(with.listTerms(), std::vector<std::string>{"sweep"});
   EXPECT_NEAR(with.steps[0].ranked[0].estimate, 0.05, 4.0 * with.steps[0].ranked[0].stddev);
   EXPECT_TRUE(with.corrected.candidates.empty());  // it is a parameter now
 }
 
 // What remains is a force, and with it the intervals hold again.
 TEST(Diagnosis, WidensIntervalsByWhatRemains) {
-  const Diagnosis diagnosis = diagnoseCart({measure("F - k3*x^3 + 0.05*sin(9*t^2)")});
+  const Diagnosis diagnosis = diagnoseCart({measureCart("F - k3*x^3 + 0.05*sin(9*t^2)")});
   ASSERT_TRUE(diagnosis.remainder.has_value());
   EXPECT_GT(diagnosis.remainder->log_evidence, 10.0);
   for (Eigen::Index i = 0; i < 3; ++i) {
     EXPECT_GT(diagnosis.remainder->stddevs[i], diagnosis.after.posterior.stddev[i]);
-    EXPECT_NEAR(diagnosis.remainder->mean[i], kTruth[i], 4.0 * diagnosis.remainder->stddevs[i]);
+    EXPECT_NEAR(diagnosis.remainder->mean[i], kTrueCart[i], 4.0 * diagnosis.remainder->stddevs[i]);
   }
+}
+
+// The residual's size is the noise's, with friction first and then without.
+TEST(Diagnosis, FindsWhatIsMissingWhereTheSizeOfTheNoiseIsUnknown) {
+  const std::vector<std::string> unknown{"noise.stddev.x=unknown"};
+  const Diagnosis diagnosis = diagnoseCart({measureCart(kWithFriction)}, {}, unknown);
+  EXPECT_EQ(diagnosis.listTerms(), std::vector<std::string>{"coulomb.x"});
+  const double stddev = loadExperiment(kCart).noise.stddev[0].stddev;
+  EXPECT_NEAR(diagnosis.noise.stddev[0].stddev / stddev, 1.0, 0.25);  // of 100 samples 3.5 sds
+  EXPECT_TRUE(diagnosis.corrected.noise.stddev[0].stddev.unknown);
+  EXPECT_NE(makeDiagnosisTable(diagnosis, "m.csv").find("Noise as the residual has it: sd "),
+            std::string::npos);
+  const Diagnosis sound = diagnoseCart({measureCart(kSound)}, {}, unknown);
+  EXPECT_EQ(sound.found, 0U);
+  EXPECT_NEAR(sound.noise.stddev[0].stddev / stddev, 1.0, 0.25);
 }
 
 TEST(Diagnosis, RefusesTermsThatTheParametersTakeUp) {
   for (const char* term : {"damping.x", "nonsense.x"}) {
-    EXPECT_THROW(diagnoseCart({measure(kSound)}, {term}), ExperimentError) << term;
+    EXPECT_THROW(diagnoseCart({measureCart(kSound)}, {term}), ExperimentError) << term;
   }
+}
+
+TEST(BlindSpots, NeedTheSizeOfTheNoise) {
+  const ExperimentSpec experiment = loadExperiment(kCart, {"noise.stddev.x=unknown"});
+  const ResponseLayout layout = makeLayout(experiment);
+  const VectorXd none = VectorXd::Zero(makeExtractor(experiment, layout).getFeatureCount());
+  EXPECT_THROW(calcBlindSpots(experiment, {layout, {none}, {}}, 0.01), ExperimentError);
 }
 
 // Drag of the size that is noticed: z is then 1.645 above the critical one, by the linear model.

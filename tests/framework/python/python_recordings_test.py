@@ -87,7 +87,9 @@ class Recordings(FolderTestCase):
         poor = twinmap.Experiment.from_yaml(describe("0 * x", FREE))
         true = describe("-20000 * x^3", FREE)
         recordings = [self.measure_text(true, seed) for seed in (1, 2)]
-        diagnosis = poor.diagnose(recordings)
+        page = self.folder / "lacks.html"
+        diagnosis = poor.diagnose(recordings, page=page)
+        self.assertIn("What cart lacks", page.read_text())
         self.assertIn("cubic", diagnosis.terms[0])
         self.assertTrue(diagnosis.complete)
         self.assertIn(diagnosis.terms[0], set(diagnosis.to_frame()["term"]))

@@ -8,6 +8,7 @@
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
+#include "framework/study/diagnosis/diagnosis_page.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -34,6 +35,9 @@ void diagnose(const DiagnoseArguments& arguments) {
     if (!arguments.accepted.empty()) {
       throw ExperimentError("--accept fits a term to measurements; give their files");
     }
+    if (!arguments.page.empty()) {
+      throw ExperimentError("--page draws measurements; give their files");
+    }
     printBlindSpots(arguments, reader, recordings);
     return;
   }
@@ -47,6 +51,10 @@ void diagnose(const DiagnoseArguments& arguments) {
                                 : makeDiagnosisTable(diagnosis, name));
   if (!arguments.out.empty()) {
     writeTextFile(arguments.out, writeExperiment(diagnosis.corrected));
+  }
+  if (!arguments.page.empty()) {
+    writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, reader.getExperiment(), recordings,
+                                                    nameRecordings(arguments.files, arguments.starts)));
   }
 }
 

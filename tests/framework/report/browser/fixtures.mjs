@@ -125,6 +125,18 @@ export function makeHistory(folder, page) {
   callTwinmap('infer', cart, ...files, '--page', join(folder, page));
 }
 
+/** A page of what the cart lacks by two recordings: dry friction. */
+export function makeDiagnosis(folder, page) {
+  const cart = join(kSource, 'experiments/duffing/cart.yaml');
+  const files = [0, 1].map(i => {
+    const file = join(folder, `diagnosis_${i}.csv`);
+    callTwinmap('simulate', cart, '--noise', '--csv', file, `seed=${i}`,
+        'system.force_laws[0].force=F - k3*x^3 - 0.03*tanh(x_dot/0.01)');
+    return file;
+  });
+  callTwinmap('diagnose', cart, ...files, '--page', join(folder, page));
+}
+
 /** An experiment on a cart between springs, simulated in a moment. */
 function makeCartYaml({name, parameters, stiffness, damping, output, more}) {
   return `name: ${name}

@@ -5,8 +5,8 @@ import {mkdtempSync, mkdirSync, readFileSync, rmSync, statSync} from 'node:fs';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {after, before, test} from 'node:test';
-import {kNames, kSweep, kTestSamples, makeHistory, makeRun, makeRunWithFailures, makeRunWithLongNames, makeRunWithSprings,
-        makeSweep, callTwinmap, readCsv} from './fixtures.mjs';
+import {kNames, kSweep, kTestSamples, makeDiagnosis, makeHistory, makeRun, makeRunWithFailures, makeRunWithLongNames,
+        makeRunWithSprings, makeSweep, callTwinmap, readCsv} from './fixtures.mjs';
 import {launchBrowser, openPage} from './launch.mjs';
 
 const kScreenshots = process.env.TWINMAP_SCREENSHOTS;
@@ -395,6 +395,31 @@ test('parameters over measurements are drawn with intervals and their course', a
   assert.equal(await countMarks(page, 'history-0', 'line'), 1);
   assert.match(await page.locator('p.lead').first().textContent(), /^k fell by .* at measurement 5\.$/);
   await screenshot(page, 'history-1280');
+  await close(page);
+});
+
+test('a diagnosis draws residuals and the force that is missing, of the recording that is chosen', async () => {
+  makeDiagnosis(folder, 'diagnosis.html');
+  for (const width of [1280, 400]) {
+    const page = await open('diagnosis.html', {viewport: {width, height: 900}});
+    await assertEverythingDrawn(page);
+    await assertFits(page, 'diagnosis');
+    await screenshot(page, `diagnosis-${width}`);
+    await close(page);
+  }
+  const page = await open('diagnosis.html');
+  assert.equal(await page.locator('p.lead').textContent(), 'Missing: coulomb.x');
+  assert.equal(await countMarks(page, 'residual-0-0', 'symbol'), 200); // before and after
+  assert.equal(await countMarks(page, 'residual-0-1', 'line'), 2);
+  assert.equal(await countMarks(page, 'force-0-0', 'line'), 2); // over the speed: as a function, and the term
+  assert.equal(await countMarks(page, 'force-0-1', 'line'), 1); // over the position: the term
+  assert.equal(await countMarks(page, 'force-0-time-0', 'area'), 1);
+  const readBand = () => page.locator(findMarks('force-0-time-0', 'area')).getAttribute('d');
+  const first = await readBand();
+  await page.locator('select[data-figure=force-0-time][data-choice=recording]').selectOption({index: 1});
+  await page.waitForFunction(([selector, before]) =>
+      document.querySelector(selector) && document.querySelector(selector).getAttribute('d') !== before,
+      [findMarks('force-0-time-0', 'area'), first]);
   await close(page);
 });
 

@@ -1,0 +1,47 @@
+#include "framework/diagnosis/remainder/residual_noise.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace twinmap {
+namespace {
+
+/// Of the residuals of an output; 0 where it has none.
+double calcMeanSquare(const WhitenedResidual& fit, const std::vector<std::string>& outputs,
+                      const std::string& name) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < fit.infos.size(); ++i) {
+    const int output = fit.infos[i].output;
+    if (output >= 0 && outputs[static_cast<std::size_t>(output) % outputs.size()] == name) {
+      const double residual = fit.residual[static_cast<Eigen::Index>(i)];
+      sum += residual * residual;
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+}  // namespace
+
+bool hasUnknownNoise(const NoiseSpec& noise) {
+  return std::any_of(noise.stddev.begin(), noise.stddev.end(),
+                     [](const OutputNoiseSpec& one) { return one.stddev.unknown; });
+}
+
+NoiseSpec sizeNoise(const NoiseSpec& stated, const WhitenedResidual& fit,
+                    const std::vector<std::string>& outputs) {
+  NoiseSpec sized = stated;
+  const double taken_up = static_cast<double>(fit.infos.size()) / std::max(1.0, fit.degrees);
+  for (std::size_t i = 0; i < sized.stddev.size(); ++i) {
+    NoiseStddev& stddev = sized.stddev[i].stddev;
+    const double mean_square = calcMeanSquare(fit, outputs, sized.stddev[i].name.text);
+    if (stddev.unknown && mean_square > 0.0) {
+      stddev.value = fit.used.stddev[i].stddev.value * std::sqrt(taken_up * mean_square);
+      stddev.unknown = false;
+    }
+  }
+  return sized;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/data/features/feature_block.hpp"
+#include "framework/experiment/noise_spec.hpp"
+
+namespace twinmap {
+
+bool hasUnknownNoise(const NoiseSpec& noise);
+
+/// A fit's residual, whitened with the noise that `used` says.
+struct WhitenedResidual {
+  const NoiseSpec& used;
+  const Eigen::VectorXd& residual;
+  double degrees = 0.0;                   ///< of freedom
+  const std::vector<FeatureInfo>& infos;  ///< of each; outputs are counted on over recordings
+};
+
+/// Noise whose unknown sizes are those of the residual, which what the model lacks makes larger.
+NoiseSpec sizeNoise(const NoiseSpec& stated, const WhitenedResidual& fit,
+                    const std::vector<std::string>& outputs);
+
+}  // namespace twinmap
