@@ -117,6 +117,7 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
             {"level", diagnosis.level},
             {"found", diagnosis.terms},
             {"complete", diagnosis.after.isExplained()},
+            {"at_bounds", diagnosis.listAtBounds()},
             {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
             {"steps", Json::array()}};

@@ -124,6 +124,15 @@ std::string makeParameterRows(const Diagnosis& diagnosis) {
   return alignRows(rows, 2, "  ");
 }
 
+/// Terms make up for bounds that are too narrow, as they do for what the model lacks.
+std::string warnOfBounds(const Diagnosis& diagnosis) {
+  const std::vector<std::string> names = diagnosis.listAtBounds();
+  return names.empty() ? ""
+                       : fmt::format("  The best fit lies at the bounds of {}: widen them first, as terms may "
+                                     "make up for bounds that are too narrow.\n",
+                                     fmt::join(names, ", "));
+}
+
 /// What is left, and the parameters with it.
 std::string describeRemainder(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
   std::string text = fmt::format(
@@ -144,6 +153,7 @@ std::string describeRemainder(const Remainder& remainder, const std::vector<Para
 std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
   const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
   std::string text = fmt::format("{}: {}\n", source, describeFit(diagnosis.before));
+  text += warnOfBounds(diagnosis);
   for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
     if (!diagnosis.steps[i].ranked.empty()) {
       text += describeStep(diagnosis.steps[i], i + 1, parameters, diagnosis.level);

@@ -209,7 +209,7 @@ std::vector<FittedRecording> fitRecordings(const ExperimentSpec& experiment,
   const auto own = static_cast<Index>(experiment.model.nuisance.size());
   std::vector<FittedRecording> fitted;
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
-    const RecordedFeatures one{recordings.layout, {recordings.features[k]}, recordings.known};
+    const RecordedFeatures one = recordings.select({k});
     VectorXd at(p + own);
     at << point.head(p), point.segment(p + static_cast<Index>(k) * own, own);
     const RecordingsProblem problem(experiment, one);
