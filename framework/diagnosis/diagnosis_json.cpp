@@ -101,7 +101,7 @@ Json makeRemainderJson(const Remainder& remainder, const std::vector<ParameterSp
             {"log_evidence", remainder.log_evidence},
             {"times", std::vector<double>(remainder.times.begin(), remainder.times.end())},
             {"process", std::vector<double>(remainder.process.begin(), remainder.process.end())}};
-  for (Index i = 0; i < remainder.mean.size(); ++i) {
+  for (Index i = 0; i < remainder.mean.size() && remainder.findOutside(parameters) < 0; ++i) {
     json["parameters"][parameters[static_cast<std::size_t>(i)].name.text] = {{"mean", remainder.mean[i]},
                                                                              {"sd", remainder.stddevs[i]}};
   }

@@ -128,17 +128,23 @@ std::string makeParameterRows(const Diagnosis& diagnosis) {
 std::string warnOfBounds(const Diagnosis& diagnosis) {
   const std::vector<std::string> names = diagnosis.listAtBounds();
   return names.empty() ? ""
-                       : fmt::format("  The best fit lies at the bounds of {}: widen them first, as terms may "
-                                     "make up for bounds that are too narrow.\n",
-                                     fmt::join(names, ", "));
+                       : fmt::format(
+                             "  The best fit lies at the bounds of {}: widen them first, as terms may "
+                             "make up for bounds that are too narrow.\n",
+                             fmt::join(names, ", "));
 }
 
 /// What is left, and the parameters with it.
 std::string describeRemainder(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
-  std::string text = fmt::format(
-      "  What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}). With it:\n",
-      remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
-      toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+  std::string text =
+      fmt::format("  What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}).",
+                  remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
+                  toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+  if (const Index outside = remainder.findOutside(parameters); outside >= 0) {
+    return text + fmt::format(" It would move {} out of its bounds: no estimate.\n",
+                              parameters[static_cast<std::size_t>(outside)].name.text);
+  }
+  text += " With it:\n";
   std::vector<std::vector<std::string>> rows{{"parameter", "unit", "effective", "sd"}};
   for (Index i = 0; i < remainder.mean.size(); ++i) {
     const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
