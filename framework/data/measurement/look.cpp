@@ -1,9 +1,12 @@
 #include "framework/data/measurement/look.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/recording/row_order.hpp"
 #include "framework/experiment/expression/units.hpp"
 
