@@ -61,7 +61,7 @@ MACHINES = [
         "A pendulum on a motor (DFKI, torque_limited_simple_pendulum)",
         [0.4, 1.4, 2.4, 3.4, 16.2],
         [8, 12.7],
-        {"J": "0.0626", "ml": "0.1022", "Fv": "0.0471", "coulomb_q": "0.184", "constant_force_q": "0.076"},
+        {"J": "0.0626", "ml": "0.1022", "Fv": "0.0471", "coulomb_q": "0.289", "constant_force_q": "0.076"},
         ["coulomb.q", "constant_force.q", "delay.tau"],
         "",
     ),
