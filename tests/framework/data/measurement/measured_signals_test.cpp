@@ -74,7 +74,7 @@ TEST_F(MeasuredSignals, FollowAWindowAndHoldTheirEnds) {
   const Table table = readTable(folder_ / "a.csv", listSignalColumns(experiment_));
   EXPECT_FALSE(followMeasuredSignals(experiment_, table, 0.0, 0.0));
   EXPECT_TRUE(followMeasuredSignals(experiment_, table, -2.0, 0.5));  // the file begins where the window does
-  EXPECT_LE(updTable().times.front(), -0.5);
+  EXPECT_NEAR(updTable().times.front(), -0.5, 1e-9);
   EXPECT_EQ(updTable().values.front(), 0.0);
   EXPECT_NEAR(updTable().values.back(), 1e4 * updTable().times.back(), 1e-9);
   EXPECT_THROW(followMeasuredSignals(experiment_, table, 7.5, 0.0), MeasurementError);
