@@ -318,6 +318,21 @@ MatrixXd AveragedEstimate::calcQuantiles(const VectorXd& probabilities) const {
   return importance::calcQuantiles({draws, weights}, probabilities);
 }
 
+std::vector<std::string> Diagnosis::listAtBounds() const {
+  constexpr double kNear = 0.01;  // of the width
+  std::vector<std::string> names;
+  const VectorXd& best = before.posterior.best;
+  for (std::size_t i = 0; i < shared && best.size() > 0 && !before.isExplained(); ++i) {
+    const ParameterSpec& parameter = corrected.model.parameters[i];
+    const double value = best[static_cast<Index>(i)];
+    const double width = parameter.bounds.upper - parameter.bounds.lower;
+    if (std::min(value - parameter.bounds.lower, parameter.bounds.upper - value) < kNear * width) {
+      names.push_back(parameter.name.text);
+    }
+  }
+  return names;
+}
+
 const char* Diagnosis::getStatus() const {
   return getNotice(after.isExplained() ? Notice::kOk : Notice::kModelIncomplete).name;
 }

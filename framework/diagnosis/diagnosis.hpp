@@ -96,6 +96,10 @@ struct Diagnosis {
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;
 
+  /// Parameters whose best value before any term is within a hundredth of their bounds' width from a bound;
+  /// none where the noise explains the recordings.
+  std::vector<std::string> listAtBounds() const;
+
   /// "ok", or "model_incomplete" where something is left unexplained.
   const char* getStatus() const;
 

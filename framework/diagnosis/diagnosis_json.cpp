@@ -114,7 +114,7 @@ Json makeRemainderJson(const Remainder& remainder, const std::vector<ParameterSp
             {"log_evidence", remainder.log_evidence},
             {"times", std::vector<double>(remainder.times.begin(), remainder.times.end())},
             {"process", std::vector<double>(remainder.process.begin(), remainder.process.end())}};
-  for (Index i = 0; i < remainder.mean.size(); ++i) {
+  for (Index i = 0; i < remainder.mean.size() && remainder.findOutside(parameters) < 0; ++i) {
     json["parameters"][parameters[static_cast<std::size_t>(i)].name.text] = {{"mean", remainder.mean[i]},
                                                                              {"sd", remainder.stddevs[i]}};
   }
@@ -130,6 +130,7 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
             {"level", diagnosis.level},
             {"found", diagnosis.listTerms()},
             {"complete", diagnosis.after.isExplained()},
+            {"at_bounds", diagnosis.listAtBounds()},
             {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
             {"steps", Json::array()}};

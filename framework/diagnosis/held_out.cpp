@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -37,6 +38,17 @@ ExperimentSpec holdParameters(const ExperimentSpec& experiment) {
   return held;
 }
 
+/// The centre of the box and points all over it: from one alone, an angle may end a turn or a summit away.
+MatrixXd makeStarts(const std::vector<ParameterSpec>& unknown) {
+  constexpr Index kStarts = 16;
+  MatrixXd starts =
+      drawSobol(static_cast<int>(unknown.size()), kStarts, RandomStream(1, RandomPurpose::kPosterior), 0, 0);
+  starts = calcWidths(unknown).asDiagonal() * starts;
+  starts.colwise() += calcLowerBounds(unknown);
+  starts.col(0) = calcBoxCenter(unknown);
+  return starts;
+}
+
 /// The unknown parameters of one recording, those of the machine held at `parameters`.
 VectorXd fitNuisance(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                      const VectorXd& parameters) {
@@ -49,7 +61,7 @@ VectorXd fitNuisance(const ExperimentSpec& experiment, const RecordedFeatures& r
   RecordedFeatures held = recording;
   held.known.resize(parameters.size() + recording.known.size());
   held.known << parameters, recording.known;
-  const RecordingFit fit = RecordingsProblem(holdParameters(experiment), held).fit(calcBoxCenter(nuisance));
+  const RecordingFit fit = RecordingsProblem(holdParameters(experiment), held).fit(makeStarts(nuisance));
   if (fit.point.size() == 0) {
     throw std::runtime_error("the recording cannot be simulated with these parameters");
   }

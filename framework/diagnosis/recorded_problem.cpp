@@ -3,6 +3,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "framework/data/measurement/measured_signals.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
 
 namespace twinmap {
@@ -39,14 +40,31 @@ void addStarts(const RefinementModel& model, Index first, std::vector<Index>& st
   }
 }
 
-PosteriorProblem makeRecordedProblem(const SimulatorRefiner& simulator, const ExperimentSpec& experiment,
+using Simulators = std::vector<std::unique_ptr<const SimulatorRefiner>>;
+
+Simulators makeSimulators(const ExperimentSpec& experiment, const RecordedFeatures& recordings) {
+  Simulators simulators;
+  if (recordings.excitations.empty()) {
+    simulators.push_back(std::make_unique<const SimulatorRefiner>(experiment, recordings.layout));
+  }
+  for (const std::vector<SignalSpec>& excitation : recordings.excitations) {
+    ExperimentSpec own = experiment;
+    copyMeasuredSignals(excitation, own.model);
+    simulators.push_back(std::make_unique<const SimulatorRefiner>(own, recordings.layout));
+  }
+  simulators.front()->requireNoise();
+  return simulators;
+}
+
+PosteriorProblem makeRecordedProblem(const Simulators& simulators, const ExperimentSpec& experiment,
                                      const RecordedFeatures& recordings) {
   PosteriorProblem problem;
   problem.unknown = experiment.model.parameters;
   problem.priors = experiment.model.priors;
-  const std::vector<ParameterSpec>& own = simulator.getUnknown();
+  const std::vector<ParameterSpec>& own = simulators.front()->getUnknown();
   const std::size_t shared = problem.unknown.size();
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    const SimulatorRefiner& simulator = *simulators[simulators.size() > 1 ? k : 0];
     MeasuredTrial trial = simulator.makeTrial(recordings.features[k], recordings.known);
     for (std::size_t j = shared; j < own.size(); ++j) {
       trial.unknown[j] = static_cast<Index>(problem.unknown.size());
@@ -65,11 +83,49 @@ PosteriorProblem makeRecordedProblem(const SimulatorRefiner& simulator, const Ex
 
 }  // namespace
 
+RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& recordings) const {
+  RecordedFeatures selected{layout, {}, known};
+  for (const std::size_t k : recordings) {
+    selected.features.push_back(features[k]);
+    if (!excitations.empty()) {
+      selected.excitations.push_back(excitations[k]);
+    }
+  }
+  return selected;
+}
+
+RecordedFeatures RecordedFeatures::leaveOut(std::size_t recording) const {
+  std::vector<std::size_t> others;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    if (k != recording) {
+      others.push_back(k);
+    }
+  }
+  return select(others);
+}
+
+void append(const RecordedFeatures& more, RecordedFeatures& recordings) {
+  recordings.features.insert(recordings.features.end(), more.features.begin(), more.features.end());
+  recordings.excitations.insert(recordings.excitations.end(), more.excitations.begin(), more.excitations.end());
+  if (!recordings.excitations.empty() && recordings.excitations.size() < recordings.features.size()) {
+    throw MeasurementError("some recordings have a column of the measured excitation, and others have not");
+  }
+}
+
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const VectorXd& known) {
-  AvailableFeatures found = reader.readAvailableFeatures(table, start);
+  constexpr double kBeside = 0.25;  // of the duration: for delays that are tried
+  RecordedFeatures recording{reader.getLayout(), {}, known};
+  std::optional<MeasurementReader> own;
+  const double duration = reader.getExperiment().model.simulation.duration;
+  if (std::optional<ExperimentSpec> followed = reader.followExcitation(table, start, kBeside * duration)) {
+    recording.excitations.push_back(followed->model.excitation);
+    own.emplace(std::move(*followed));
+  }
+  AvailableFeatures found = (own ? *own : reader).readAvailableFeatures(table, start);
   requireNoneStated(found.stated, table.source);
-  return {reader.getLayout(), {std::move(found.features)}, known};
+  recording.features.push_back(std::move(found.features));
+  return recording;
 }
 
 RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
@@ -83,7 +139,7 @@ RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vect
   for (const std::string& file : files) {
     const Table table = readTable(file, reader.listColumns(), MissingCells::kKeep);
     for (const std::optional<double>& start : windows) {
-      recordings.features.push_back(readRecording(reader, table, start, recordings.known).features.front());
+      append(readRecording(reader, table, start, recordings.known), recordings);
     }
   }
   return recordings;
@@ -93,20 +149,18 @@ SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFe
                               const VectorXd& point, std::size_t k) {
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   const auto own = static_cast<Index>(experiment.model.nuisance.size());
-  SingleRecording single{{recordings.layout, {recordings.features[k]}, recordings.known}, VectorXd(p + own)};
+  SingleRecording single{recordings.select({k}), VectorXd(p + own)};
   single.point << point.head(p), point.segment(p + static_cast<Index>(k) * own, own);
   return single;
 }
 
 RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
-    : simulator_(experiment, recordings.layout) {
-  simulator_.requireNoise();
-  problem_ = makeRecordedProblem(simulator_, experiment, recordings);
-}
+    : simulators_(makeSimulators(experiment, recordings)),
+      problem_(makeRecordedProblem(simulators_, experiment, recordings)) {}
 
 std::vector<FeatureInfo> RecordingsProblem::listInfos() const {
   std::vector<FeatureInfo> infos;
-  const int outputs = static_cast<int>(simulator_.getSimulator().getLayout().getOutputCount());
+  const int outputs = static_cast<int>(getSimulator().getSimulator().getLayout().getOutputCount());
   for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
     const RefinementModel& model = *problem_.trials[k].model;
     for (const Index i : model.getWhole().features) {

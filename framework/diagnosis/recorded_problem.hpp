@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -14,9 +15,18 @@ struct RecordedFeatures {
   ResponseLayout layout;
   std::vector<Eigen::VectorXd> features;  ///< of each recording, NaN where missing
   Eigen::VectorXd known;                  ///< of the inputs
+  /// Of each recording, its measured tables; empty where all have the experiment's.
+  std::vector<std::vector<SignalSpec>> excitations{};
+
+  RecordedFeatures select(const std::vector<std::size_t>& recordings) const;
+  /// All but one.
+  RecordedFeatures leaveOut(std::size_t recording) const;
 };
 
-/// One window of a table. start: time in it that is 0 of the model; none: as the experiment says. Throws
+/// The recordings behind those that are there.
+void append(const RecordedFeatures& more, RecordedFeatures& recordings);
+
+/// One window of a table, with the excitation that was measured in it, where it has its columns. start: time in it that is 0 of the model; none: as the experiment says. Throws
 /// MeasurementError.
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const Eigen::VectorXd& known);
@@ -60,7 +70,7 @@ class RecordingsProblem {
 
   const std::vector<ParameterSpec>& getUnknown() const { return problem_.unknown; }
   const PosteriorProblem& get() const { return problem_; }
-  const SimulatorRefiner& getSimulator() const { return simulator_; }
+  const SimulatorRefiner& getSimulator() const { return *simulators_.front(); }
 
   /// Of all residuals, for testResidual(): each recording's outputs have numbers of their own.
   std::vector<FeatureInfo> listInfos() const;
@@ -73,7 +83,7 @@ class RecordingsProblem {
   RecordingFit fit(const Eigen::MatrixXd& starts) const;
 
  private:
-  SimulatorRefiner simulator_;
+  std::vector<std::unique_ptr<const SimulatorRefiner>> simulators_;  // one of all recordings, or of each
   PosteriorProblem problem_;
 };
 

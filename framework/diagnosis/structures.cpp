@@ -51,11 +51,9 @@ void holdOutEach(const ExperimentSpec& experiment, const RecordedFeatures& recor
                  const SimulatorPosteriorOptions& options, StructureFit& fit) {
   double squares = 0.0;
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
-    RecordedFeatures others = recordings;
-    others.features.erase(others.features.begin() + static_cast<std::ptrdiff_t>(k));
-    const RecordedFeatures own{recordings.layout, {recordings.features[k]}, recordings.known};
     const HeldOutPrediction prediction =
-        predictHeldOut(experiment, own, inferMachine(experiment, others, options));
+        predictHeldOut(experiment, recordings.select({k}),
+                       inferMachine(experiment, recordings.leaveOut(k), options));
     squares += prediction.rms * prediction.rms;
     fit.held_out_p = std::min(fit.held_out_p, prediction.p_value);
   }

@@ -12,8 +12,11 @@
 namespace twinmap {
 namespace {
 
-/// Of samples alone.
+/// Of experiments that differ by the times of samples at most.
 bool areSame(const std::vector<FeatureSpec>& features, const std::vector<FeatureSpec>& others) {
+  if (!areSamples(features) || !areSamples(others)) {
+    return true;
+  }
   return std::equal(features.begin(), features.end(), others.begin(), others.end(),
                     [](const FeatureSpec& feature, const FeatureSpec& other) {
                       const auto &a = std::get<SamplesFeatureSpec>(feature),
@@ -23,11 +26,23 @@ bool areSame(const std::vector<FeatureSpec>& features, const std::vector<Feature
                     });
 }
 
+/// Of experiments that differ by their measured tables at most.
+bool areSame(const std::vector<SignalSpec>& signals, const std::vector<SignalSpec>& others) {
+  const auto same_table = [](const TableSpec& table, const TableSpec& other) {
+    return table.times == other.times && table.values == other.values;
+  };
+  return std::equal(signals.begin(), signals.end(), others.begin(), others.end(),
+                    [&](const SignalSpec& signal, const SignalSpec& other) {
+                      return std::equal(signal.tables.begin(), signal.tables.end(), other.tables.begin(),
+                                        other.tables.end(), same_table);
+                    });
+}
+
 }  // namespace
 
-/// An inference whose features are at the times of tables.
-struct DirectInference::AtRecordedTimes {
-  AtRecordedTimes(ExperimentSpec experiment, const SimulatorPosteriorOptions& options)
+/// An inference whose features are at the times of a table, and whose excitation is the table's.
+struct DirectInference::LikeRecording {
+  LikeRecording(ExperimentSpec experiment, const SimulatorPosteriorOptions& options)
       : reader(std::move(experiment)),
         inference(reader, options.draws, SimulatorRefiner::Model::kTrusted, options.profiles) {}
 
@@ -50,11 +65,13 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws, Sim
 
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
                                            const Eigen::VectorXd& known) {
-  if (AtRecordedTimes* followed = followTimes(table, start)) {
+  if (LikeRecording* followed = follow(table, start)) {
     InferredMeasurement inferred =
         followed->inference.infer(table, start, followed->reader.readAvailableFeatures(table, start), known);
-    inferred.remarks.emplace_back(
-        "features are taken at the times of the recording, between which nothing is interpolated");
+    if (!areSame(followed->reader.getExperiment().features, reader_.getExperiment().features)) {
+      inferred.remarks.emplace_back(
+          "features are taken at the times of the recording, between which nothing is interpolated");
+    }
     return inferred;
   }
   const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
@@ -62,14 +79,16 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   return infer(table, start, found, known);
 }
 
-DirectInference::AtRecordedTimes* DirectInference::followTimes(const Table& table,
-                                                               std::optional<double> start) {
-  std::optional<ExperimentSpec> experiment = reader_.followTimes(table, start);
+DirectInference::LikeRecording* DirectInference::follow(const Table& table,
+                                                        std::optional<double> start) {
+  std::optional<ExperimentSpec> experiment = reader_.follow(table, start);
   if (!experiment) {
     return nullptr;
   }
-  if (!followed_ || !areSame(followed_->reader.getExperiment().features, experiment->features)) {
-    followed_ = std::make_unique<AtRecordedTimes>(std::move(*experiment), options_);
+  const ExperimentSpec* last = followed_ ? &followed_->reader.getExperiment() : nullptr;
+  if (last == nullptr || !areSame(last->features, experiment->features) ||
+      !areSame(last->model.excitation, experiment->model.excitation)) {
+    followed_ = std::make_unique<LikeRecording>(std::move(*experiment), options_);
   }
   return followed_.get();
 }

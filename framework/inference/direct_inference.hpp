@@ -24,7 +24,7 @@ class DirectInference final : public MeasurementInference {
   MissingCells getMissingCells() const override { return MissingCells::kKeep; }
 
   /// Where samples would be interpolated, features are taken at the times of the table
-  /// (MeasurementReader::followTimes). Samples that the table lacks are left out of the likelihood
+  /// and the excitation is that of the table, where it has one (MeasurementReader::follow). Samples that the table lacks are left out of the likelihood
   /// (MeasurementReader::readAvailableFeatures); standard deviations that it states go before the
   /// experiment's.
   InferredMeasurement infer(const Table& table, std::optional<double> start,
@@ -41,10 +41,10 @@ class DirectInference final : public MeasurementInference {
                 InferredMeasurement& inferred) const;
 
  private:
-  struct AtRecordedTimes;
+  struct LikeRecording;
 
-  /// What infers at the times of a table, where it would be interpolated; null where not.
-  AtRecordedTimes* followTimes(const Table& table, std::optional<double> start);
+  /// What infers with the times and the excitation of a table; null where they are the experiment's.
+  LikeRecording* follow(const Table& table, std::optional<double> start);
 
   InferredMeasurement infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
                             const Eigen::VectorXd& known, const std::vector<ClippedSample>& clipped) const;
@@ -58,7 +58,7 @@ class DirectInference final : public MeasurementInference {
   SimulatorPosteriorOptions options_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
   std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
-  std::unique_ptr<AtRecordedTimes> followed_;            // of the last table that was interpolated
+  std::unique_ptr<LikeRecording> followed_;            // of the last table that was followed
 };
 
 }  // namespace twinmap

@@ -218,7 +218,7 @@ const JointInferrer::Member& JointInferrer::follow(const Recording& recording) c
   if (const auto known = followed_.find(recording.label); known != followed_.end()) {
     return known->second;
   }
-  std::optional<ExperimentSpec> experiment = member.reader->followTimes(*recording.table, recording.start);
+  std::optional<ExperimentSpec> experiment = member.reader->follow(*recording.table, recording.start);
   if (!experiment) {
     return member;
   }

@@ -90,7 +90,7 @@ class JointInferrer {
   };
 
   const Member& find(const std::string& trial) const;
-  /// That of its trial, with the features at its own times where it would be interpolated.
+  /// That of its trial, with the recording's times and excitation (MeasurementReader::follow).
   const Member& follow(const Recording& recording) const;
   MeasuredTrial makeTrial(const Recording& recording) const;
   RecordingInference inferAlone(const Recording& recording) const;

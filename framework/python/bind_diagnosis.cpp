@@ -20,13 +20,11 @@ RecordedFeatures readTables(const MeasurementReader& reader, const std::vector<R
   if (from.empty()) {
     from.emplace_back();
   }
-  RecordedFeatures all;
+  RecordedFeatures all{reader.getLayout(), {}, known};
   for (const auto& [name, columns] : recordings) {
     const Table table = readOrMakeTable(name, columns, reader.listColumns());
     for (const std::optional<double>& start : from) {
-      RecordedFeatures one = readRecording(reader, table, start, known);
-      one.features.insert(one.features.begin(), all.features.begin(), all.features.end());
-      all = std::move(one);
+      append(readRecording(reader, table, start, known), all);
     }
   }
   return all;

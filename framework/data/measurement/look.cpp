@@ -1,9 +1,12 @@
 #include "framework/data/measurement/look.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/recording/row_order.hpp"
 #include "framework/experiment/expression/units.hpp"
 
@@ -198,6 +201,14 @@ ColumnLook lookAt(const Column& column, const VectorXd& times) {
   return look;
 }
 
+Index countRows(const Table& table) {
+  Index rows = 0;
+  for (const Column& column : table.columns) {
+    rows = std::max(rows, column.values.size());
+  }
+  return rows;
+}
+
 }  // namespace
 
 TableLook look(const Table& table, const TimeBase& base) {
@@ -207,6 +218,12 @@ TableLook look(const Table& table, const TimeBase& base) {
   const TimeBase known = findTimes(table, base, looked);
   for (const Column& column : table.columns) {
     if (column.name == looked.time) {
+      continue;
+    }
+    if (column.values.size() == 1 && countRows(table) > 1) {  // a setting beside the recording
+      looked.skipped.push_back(
+          {column.name, fmt::format("{}: column '{}' is a single number, {}", table.source, column.name,
+                                    toText(column.values[0]))});
       continue;
     }
     const VectorXd times = readUnorderedTimes(table, known, column.values.size());

@@ -1,6 +1,7 @@
 #include "framework/data/measurement/measured_signals.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -68,18 +69,39 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
                            (elsewhere ? "; give the time in the file that is the model's 0 (start)" : ""));
   }
   for (Index i = 0; i + 1 < times.size(); ++i) {
-    if (times[i + 1] - times[i] > kLongest * step) {
+    const bool needed = times[i + 1] > begin && times[i] < end;  // not in the samples beside
+    if (needed && times[i + 1] - times[i] > kLongest * step) {
       throw MeasurementError(source + ": has a gap of " + describeTime(times[i + 1] - times[i]) +
                              " after t = " + describeTime(start + times[i]) + " in a signal that is needed");
     }
   }
 }
 
+/// Repeats the first and the last value, so that the table goes from `begin` to `end` at least.
+void holdEnds(TableSpec& table, double begin, double end) {
+  const double step = (table.times.back() - table.times.front()) / static_cast<double>(table.times.size() - 1);
+  const auto count = [&](double missing) {
+    return missing > kSameTime * step ? static_cast<std::size_t>(std::ceil(missing / step)) : 0;
+  };
+  const std::size_t before = count(table.times.front() - begin), behind = count(end - table.times.back());
+  std::vector<double> times;
+  for (std::size_t i = before; i > 0; --i) {
+    times.push_back(table.times.front() - static_cast<double>(i) * step);
+  }
+  table.times.insert(table.times.begin(), times.begin(), times.end());
+  table.values.insert(table.values.begin(), before, table.values.front());
+  for (std::size_t i = 0; i < behind; ++i) {
+    table.times.push_back(table.times.back() + step);
+    table.values.push_back(table.values.back());
+  }
+}
+
+constexpr Index kMaxSamples = 400'000;  // resolved experiments hold them, and at most a million values
+constexpr Index kMargin = 4;            // samples beside, for interpolation that looks at neighbours
+
 /// delays: of the table's clock, so that it is needed from the earliest time to the latest.
 void fill(TableSpec& target, const Table& table, const std::string& unit, double start, double duration,
           const Bounds& delays) {
-  constexpr Index kMaxSamples = 400'000;  // resolved experiments hold them, and at most a million values
-  constexpr Index kMargin = 4;            // samples beside, for interpolation that looks at neighbours
   const ColumnSpec column = parseColumn(target.measured->column.text, target.measured->column.where);
   const Column& found = getColumn(table, column.name);
   const VectorXd times = readTimes(table, makeTimeBase(*target.measured, start), found.values.size());
@@ -98,6 +120,34 @@ void fill(TableSpec& target, const Table& table, const std::string& unit, double
   const auto used = excerpt ? findRows(kept, 0.0, end, 0) : RowRange{0, kept.size()};
   target.times.assign(kept.data() + used.first, kept.data() + used.first + used.count);
   target.values.assign(values.data() + used.first, values.data() + used.first + used.count);
+}
+
+/// Of another recording, whose time `start` is t = 0. It is needed over the simulation alone; where it ends
+/// within `reach`, its ends are held.
+void fillRecorded(TableSpec& target, const Table& table, const std::string& unit, double start,
+                  double duration, const Bounds& reach) {
+  if (target.measured->duration && *target.measured->duration < duration) {
+    fill(target, table, unit, start, duration, reach);
+    return;
+  }
+  const ColumnSpec column = parseColumn(target.measured->column.text, target.measured->column.where);
+  const Column& found = getColumn(table, column.name);
+  const VectorXd times = readTimes(table, makeTimeBase(*target.measured, start), found.values.size());
+  requireLength(table, found, times.size());
+  const double begin = std::min(0.0, reach.lower), end = duration + std::max(0.0, reach.upper);
+  const RowRange range = findRows(times, begin, end, kMargin);
+  const VectorXd kept = times.segment(range.first, range.count);
+  requireExcerpt(table.source, kept, start, 0.0, duration);
+  const VectorXd values = readValues(table, column, unit, range.first, range.count);
+  target.times.assign(kept.data(), kept.data() + kept.size());
+  target.values.assign(values.data(), values.data() + values.size());
+  holdEnds(target, begin, end);
+}
+
+bool hasColumns(const Table& table, const MeasuredSignalSpec& spec) {
+  const std::vector<std::string> names = listColumns(spec);
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return findColumn(table, name) != nullptr; });
 }
 
 template <class Action>
@@ -133,6 +183,44 @@ void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, doub
     fill(target, table, signal.unit, start, experiment.model.simulation.duration,
          calcDelays(experiment.model, target));
   });
+}
+
+bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double shift, double beside) {
+  bool changed = false;
+  visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
+    const MeasuredSignalSpec& spec = *target.measured;
+    if (!hasColumns(recording, spec)) {
+      return;
+    }
+    TableSpec own = target;
+    const Bounds delays = calcDelays(experiment.model, target);
+    fillRecorded(own, recording, signal.unit, spec.start + shift, experiment.model.simulation.duration,
+                 {delays.lower - beside, delays.upper + beside, {}});
+    changed = changed || own.times != target.times || own.values != target.values;
+    target = std::move(own);
+  });
+  return changed;
+}
+
+void holdMeasuredEnds(SignalSpec& signal, double duration, double beside) {
+  for (TableSpec& table : signal.tables) {
+    if (table.measured && !table.measured->duration && table.times.size() > 1) {
+      holdEnds(table, -beside, duration + beside);
+    }
+  }
+}
+
+void copyMeasuredSignals(const std::vector<SignalSpec>& from, ModelSpec& model) {
+  for (const SignalSpec& signal : from) {
+    for (SignalSpec& own : model.excitation) {
+      for (std::size_t i = 0; own.name.text == signal.name.text && i < signal.tables.size(); ++i) {
+        if (signal.tables[i].measured) {
+          own.tables[i].times = signal.tables[i].times;
+          own.tables[i].values = signal.tables[i].values;
+        }
+      }
+    }
+  }
 }
 
 bool hasMeasuredSignals(const ExperimentSpec& experiment) {

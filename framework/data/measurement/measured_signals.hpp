@@ -15,6 +15,18 @@ void loadMeasuredSignals(ExperimentSpec& experiment);
 /// the same columns at the same rate or with the same times column.
 void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, double start);
 
+/// The same tables by the columns of a recording, where it has them, `shift` (s) after their own starts;
+/// `beside` (s) more at both ends, where the recording ends by its first and last value. Whether any value
+/// changed. Throws MeasurementError where the recording has a gap, or does not cover the simulation.
+bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double shift, double beside);
+
+/// The measured tables of a signal go on for `beside` (s) before and after the simulation, by their first and
+/// last values where they end.
+void holdMeasuredEnds(SignalSpec& signal, double duration, double beside);
+
+/// Times and values of measured tables, by the names of their signals.
+void copyMeasuredSignals(const std::vector<SignalSpec>& from, ModelSpec& model);
+
 /// Whether any table of the excitation is given as `measured`.
 bool hasMeasuredSignals(const ExperimentSpec& experiment);
 

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/data/measurement/measured_signals.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 
 namespace twinmap {
@@ -52,7 +53,6 @@ TableSpec differentiate(const TableSpec& table) {
   TableSpec slope;
   slope.interpolation = TableInterpolation::kHold;
   slope.times = table.times;
-  slope.measured = table.measured;  // its clock; times and values are those above
   for (std::size_t i = 0; i + 1 < table.times.size(); ++i) {
     slope.values.push_back((table.values[i + 1] - table.values[i]) / (table.times[i + 1] - table.times[i]));
   }
@@ -60,15 +60,24 @@ TableSpec differentiate(const TableSpec& table) {
   return slope;
 }
 
-/// Terms move in time; a table F cannot, so that F - c F' stands for it, which holds for delays below the
-/// time in which the signal bends.
+/// Terms move in time, as what was measured does by its clock; a table F of the experiment cannot, so that
+/// F - c F' stands for it, which holds for delays below the time in which the signal bends.
 void delaySignal(ModelSpec& model, std::size_t index, const std::string& by) {
+  constexpr double kBeside = 0.25;  // of the duration: for delays that are tried
   SignalSpec& signal = model.excitation[index];
+  holdMeasuredEnds(signal, model.simulation.duration, kBeside * model.simulation.duration);
+  for (TableSpec& table : signal.tables) {
+    if (table.measured) {
+      const Expression* delay = table.findDelay();
+      table.measured->delay.text = delay != nullptr ? "(" + delay->text + ") - " + by : "-" + by;
+    }
+  }
   delayEach(signal.pulses, by);
   delayEach(signal.sines, by);
   delayEach(signal.chirps, by);
   delayEach(signal.multisines, by);
-  if (signal.tables.empty()) {
+  if (std::all_of(signal.tables.begin(), signal.tables.end(),
+                  [](const TableSpec& table) { return table.measured.has_value(); })) {
     return;
   }
   SignalSpec slope;
@@ -76,7 +85,9 @@ void delaySignal(ModelSpec& model, std::size_t index, const std::string& by) {
   slope.name = {name + "_slope", {}};
   slope.unit = signal.unit.empty() ? "" : signal.unit + "/s";
   for (const TableSpec& table : signal.tables) {
-    slope.tables.push_back(differentiate(table));
+    if (!table.measured) {
+      slope.tables.push_back(differentiate(table));
+    }
   }
   replaceSignal(model, name, fmt::format("({} - {}*{})", name, by, slope.name.text));
   model.excitation.push_back(std::move(slope));
@@ -84,7 +95,7 @@ void delaySignal(ModelSpec& model, std::size_t index, const std::string& by) {
 
 bool canBeDelayed(const SignalSpec& signal) {
   for (const TableSpec& table : signal.tables) {
-    if (table.interpolation == TableInterpolation::kHold) {
+    if (table.interpolation == TableInterpolation::kHold && !table.measured) {
       return false;
     }
   }

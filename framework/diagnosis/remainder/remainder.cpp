@@ -90,6 +90,16 @@ std::optional<Remainder> findRemainder(const ExperimentSpec& experiment, const R
   return remainder;
 }
 
+Index Remainder::findOutside(const std::vector<ParameterSpec>& parameters) const {
+  for (Index i = 0; i < mean.size(); ++i) {
+    const Bounds& bounds = parameters[static_cast<std::size_t>(i)].bounds;
+    if (mean[i] < bounds.lower - stddevs[i] || mean[i] > bounds.upper + stddevs[i]) {
+      return i;
+    }
+  }
+  return -1;
+}
+
 RandomEffects calcRandomEffects(const VectorXd& estimates, const VectorXd& stddevs) {
   const VectorXd weights = stddevs.cwiseAbs2().cwiseInverse();
   const double sum = weights.sum(), common = weights.dot(estimates) / sum;

@@ -21,6 +21,10 @@ struct Remainder {
   /// are three or more recordings, no more certain than their scatter between them allows.
   Eigen::VectorXd mean, stddevs;
   Eigen::VectorXd times, process;  ///< its mean at some times of the first recording, s and `unit`
+
+  /// Of the machine's parameters the first whose mean is out of its bounds by more than its standard
+  /// deviation, where the linear model does not hold: then there is no estimate. -1 where none is.
+  Eigen::Index findOutside(const std::vector<ParameterSpec>& parameters) const;
 };
 
 /// At the best fit `point` (u) of an experiment; p: parameters of the machine that are reported. By the

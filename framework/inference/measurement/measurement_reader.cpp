@@ -10,6 +10,7 @@
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/measured_frequency_response.hpp"
 #include "framework/data/measurement/measured_modes.hpp"
+#include "framework/data/measurement/measured_signals.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/measurement_start.hpp"
 #include "framework/data/measurement/recording/interpolation_error.hpp"
@@ -91,6 +92,8 @@ std::vector<std::string> MeasurementReader::listColumns() const {
   std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, getRecorded().output_names);
   const std::vector<std::string> excitation = listExcitationColumns(experiment_);
   names.insert(names.end(), excitation.begin(), excitation.end());
+  const std::vector<std::string> signals = listSignalColumns(experiment_);
+  names.insert(names.end(), signals.begin(), signals.end());
   const std::vector<std::string> lines =
       listLineColumns(experiment_.measurement, layout_, linear_.getInfos());
   names.insert(names.end(), lines.begin(), lines.end());
@@ -274,6 +277,36 @@ void MeasurementReader::warnOfInterpolation(const Table& table, std::optional<do
 std::optional<ExperimentSpec> MeasurementReader::followTimes(const Table& table,
                                                              std::optional<double> start) const {
   return reduction_ ? std::nullopt : followRecordedTimes(experiment_, layout_, table, getStart(table, start));
+}
+
+std::optional<ExperimentSpec> MeasurementReader::followExcitation(const Table& table,
+                                                                  std::optional<double> start,
+                                                                  double beside) const {
+  if (reduction_ || experiment_.measurement.start.when) {
+    return std::nullopt;
+  }
+  const double shift = getStart(table, start) - experiment_.measurement.start.time;
+  ExperimentSpec followed = experiment_;
+  try {
+    return followMeasuredSignals(followed, table, shift, beside) ? std::make_optional(std::move(followed))
+                                                                 : std::nullopt;
+  } catch (const MeasurementError&) {
+    if (shift != 0.0) {
+      throw;
+    }
+    return std::nullopt;  // the experiment's own is complete
+  }
+}
+
+std::optional<ExperimentSpec> MeasurementReader::follow(const Table& table,
+                                                        std::optional<double> start) const {
+  std::optional<ExperimentSpec> followed = followExcitation(table, start);
+  if (reduction_) {
+    return followed;
+  }
+  std::optional<ExperimentSpec> timed =
+      followRecordedTimes(followed ? *followed : experiment_, layout_, table, getStart(table, start));
+  return timed ? timed : followed;
 }
 
 Eigen::VectorXd MeasurementReader::readFeatures(const Table& table, std::optional<double> start) const {

@@ -84,6 +84,14 @@ class MeasurementReader {
   /// interpolated.
   std::optional<ExperimentSpec> followTimes(const Table& table, std::optional<double> start) const;
 
+  /// The experiment with its measured excitation as the table has it, as much later as the window
+  /// (followMeasuredSignals); none where that changes nothing or measurement.start is a trigger. beside: s.
+  std::optional<ExperimentSpec> followExcitation(const Table& table, std::optional<double> start,
+                                                 double beside = 0.0) const;
+
+  /// Both.
+  std::optional<ExperimentSpec> follow(const Table& table, std::optional<double> start) const;
+
   /// Warns of outputs whose interpolation errs by more than a tenth of their noise (calcInterpolationError).
   void warnOfInterpolation(const Table& table, std::optional<double> start) const;
 

@@ -2,6 +2,7 @@
 import csv
 import io
 import json
+import math
 import re
 import unittest
 
@@ -107,6 +108,80 @@ class Diagnose(FolderTestCase):
             result = call("diagnose", *arguments)
             self.assertEqual(result.returncode, 2, result.stdout)
             self.assertIn(part, result.stderr)
+
+
+DRIVEN = """name: driven
+parameters:
+  k: {bounds: [60, 140], unit: N/m}
+  d: {bounds: [0.2, 3], unit: N s/m}
+nuisance:
+  x0: {bounds: [-0.1, 0.1], unit: m}
+  v0: {bounds: [-1, 1], unit: m/s}
+system:
+  bodies: {mass: {mass: 1, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: d}]
+  force_laws: [{coordinate: x, force: F}]
+excitation:
+  F: {unit: N, SIGNAL}
+initial: {coordinates: {x: x0}, speeds: {x: v0}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: DURATION}
+features: [{samples: {outputs: [x], start: 0.02, interval: 0.02, count: COUNT}}]
+noise: {stddev: {x: 2e-4}}
+inverse_map: none
+"""
+SINES = [(1.0, 0.7, 0.3), (0.8, 1.9, 1.0), (0.6, 3.1, 2.0)]  # amplitude, frequency, phase
+LATE = 0.04  # s, of the recorder of the force
+
+
+class DrivenWindows(FolderTestCase):
+    """A long recording whose force came 40 ms late to the recorder, explained by windows of it."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        sines = [f"{{amplitude: {a}, frequency: {f}, phase: {p}}}" for a, f, p in SINES]
+        cls.write("truth.yaml", f"sines: [{', '.join(sines)}]", 12, 600)
+        result = call(
+            "simulate", cls.folder / "truth.yaml", "--noise", "parameters.k=95", "parameters.d=1",
+            "nuisance.x0=0.02", "nuisance.v0=0.1",
+        )  # fmt: skip
+        assert result.returncode == 0, result.stderr
+        cls.record(result.stdout)
+        table = "tables: [{measured: {file: long.csv, column: F, time: t, start: 1}, interpolation: cubic}]"
+        cls.write("driven.yaml", table, 2, 99, "measurement: {start: 1}\n")
+
+    @classmethod
+    def write(cls, name, signal, duration, count, more=""):
+        text = DRIVEN.replace("SIGNAL", signal).replace("DURATION", str(duration)).replace("COUNT", str(count))
+        (cls.folder / name).write_text(text + more)
+
+    @classmethod
+    def record(cls, simulated):
+        lines = ["t,x,F"]
+        for row in list(csv.reader(io.StringIO(simulated)))[1:]:
+            t = float(row[0])
+            force = sum(a * math.sin(2 * math.pi * f * (t - LATE) + p) for a, f, p in SINES)
+            lines.append(f"{row[0]},{row[1]},{force!r}")
+        (cls.folder / "long.csv").write_text("\n".join(lines) + "\n")
+
+    def test_each_window_has_its_own_excitation(self):
+        files = [self.folder / "driven.yaml", self.folder / "long.csv"]
+        out = self.folder / "late.yaml"
+        starts = ["--start", 1, "--start", 4, "--start", 7]
+        found = json.loads(call("diagnose", *files, *starts, "--json", "--out", out).stdout)
+        self.assertEqual(found["found"], ["delay.F"])
+        delay = found["after"]["parameters"]["delay_F"]
+        self.assertLess(abs(delay["mean"] + LATE), 4 * delay["sd"])
+        self.assertTrue(found["complete"])
+        against = ["--against", files[1], "--against-start", 9.5]
+        self.assertEqual(call("validate", *files, *starts, *against).returncode, 3)
+        validated = call("validate", out, files[1], *starts, *against)
+        self.assertEqual(validated.returncode, 0, validated.stdout + validated.stderr)
+        inferred = json.loads(call("infer", out, files[1], "--start", 6, "--json").stdout)
+        self.assertEqual(inferred["status"], "ok")
+        self.assertLess(abs(inferred["parameters"]["k"]["mean"] - 95), 4 * inferred["parameters"]["k"]["sd"])
 
 
 if __name__ == "__main__":

@@ -24,6 +24,17 @@ void printBlindSpots(const DiagnoseArguments& arguments, const MeasurementReader
                                 : makeBlindSpotTable(spots, parameters));
 }
 
+/// Tolerances that the file does not give follow the noise anew: the terms' parameters may need smaller ones.
+void freeTolerances(SimulationSpec& simulation) {
+  const SimulationSpec defaults;
+  if (simulation.relative_tolerance.where.line == 0) {
+    simulation.relative_tolerance = defaults.relative_tolerance;
+  }
+  if (simulation.absolute_tolerance.where.line == 0) {
+    simulation.absolute_tolerance = defaults.absolute_tolerance;
+  }
+}
+
 }  // namespace
 
 void diagnose(const DiagnoseArguments& arguments) {
@@ -44,12 +55,13 @@ void diagnose(const DiagnoseArguments& arguments) {
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
-  const Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
+  Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
   const std::string name = fmt::format("{}", fmt::join(arguments.files, ", "));
   std::cout << (arguments.json  ? makeDiagnosisJson(diagnosis, name) + "\n"
                 : arguments.csv ? makeDiagnosisCsv(diagnosis, name)
                                 : makeDiagnosisTable(diagnosis, name));
   if (!arguments.out.empty()) {
+    freeTolerances(diagnosis.corrected.model.simulation);
     writeTextFile(arguments.out, writeExperiment(diagnosis.corrected));
   }
   if (!arguments.page.empty()) {

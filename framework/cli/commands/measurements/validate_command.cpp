@@ -84,8 +84,7 @@ void validate(const ValidateArguments& arguments) {
       one.source = windows.features.size() == 1
                        ? file
                        : fmt::format("{} from {} s", file, toText(arguments.against_starts[k]));
-      one.prediction = predictHeldOut(reader.getExperiment(),
-                                      {windows.layout, {windows.features[k]}, windows.known}, machine);
+      one.prediction = predictHeldOut(reader.getExperiment(), windows.select({k}), machine);
       one.is_good = isGood(one.prediction, arguments.max_rms);
       all.push_back(one);
     }

@@ -46,6 +46,17 @@ TEST(Look, FindsRateRangeAndNoise) {
   EXPECT_EQ(x.resolution, 0.0);
 }
 
+// As MATLAB's files hold them.
+TEST(Look, LeavesOutSettingsBesideTheRecording) {
+  Table table = recordSine();
+  table.columns.insert(table.columns.begin(), {"gain", {}, VectorXd::Constant(1, 35.0)});
+  const TableLook looked = look(table, {});
+  EXPECT_EQ(looked.rows, 401);
+  ASSERT_EQ(looked.columns.size(), 1U);
+  ASSERT_EQ(looked.skipped.size(), 1U);
+  EXPECT_EQ(looked.skipped[0].reason, "m.csv: column 'gain' is a single number, 35");
+}
+
 TEST(Look, FindsWhatIsMissing) {
   Table table = recordSine();
   table.columns[1].values.segment(200, 3).setConstant(kUnknown);

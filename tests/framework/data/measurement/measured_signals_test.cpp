@@ -69,6 +69,17 @@ TEST_F(MeasuredSignals, AreReplacedByAnotherWindow) {
   EXPECT_NEAR(updTable().values[4], 1e4 * (updTable().times[4] + 5.0), 1e-9);
 }
 
+TEST_F(MeasuredSignals, FollowAWindowAndHoldTheirEnds) {
+  loadMeasuredSignals(experiment_);
+  const Table table = readTable(folder_ / "a.csv", listSignalColumns(experiment_));
+  EXPECT_FALSE(followMeasuredSignals(experiment_, table, 0.0, 0.0));
+  EXPECT_TRUE(followMeasuredSignals(experiment_, table, -2.0, 0.5));  // the file begins where the window does
+  EXPECT_NEAR(updTable().times.front(), -0.5, 1e-9);
+  EXPECT_EQ(updTable().values.front(), 0.0);
+  EXPECT_NEAR(updTable().values.back(), 1e4 * updTable().times.back(), 1e-9);
+  EXPECT_THROW(followMeasuredSignals(experiment_, table, 7.5, 0.0), MeasurementError);
+}
+
 TEST_F(MeasuredSignals, AnExcerptEndsBeforeTheSimulation) {
   updTable().measured->duration = 0.5;
   loadMeasuredSignals(experiment_);
