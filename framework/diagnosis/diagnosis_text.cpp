@@ -48,8 +48,9 @@ void addEstimate(const VectorXd& mean, const VectorXd& stddev, Index i, std::vec
 
 /// What is left, and the parameters with it.
 std::string makeRemainderText(const Diagnosis& diagnosis) {
-  return "  " + describeRemainder(*diagnosis.remainder) + " With it:\n" +
-         alignRows(listRemainderRows(diagnosis), 2, "  ");
+  const TextRows rows = listRemainderRows(diagnosis);
+  return "  " + describeRemainder(diagnosis) +
+         (rows.empty() ? "\n" : " With it:\n" + alignRows(rows, 2, "  "));
 }
 
 }  // namespace
@@ -73,10 +74,27 @@ std::string describeNoise(const Diagnosis& diagnosis) {
   return text;
 }
 
-std::string describeRemainder(const Remainder& remainder) {
-  return fmt::format("What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}).",
-                     remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
-                     toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+std::string describeBounds(const Diagnosis& diagnosis) {
+  const std::vector<std::string> names = diagnosis.listAtBounds();
+  return names.empty() ? ""
+                       : fmt::format(
+                             "The best fit lies at the bounds of {}: widen them first, as terms may make up "
+                             "for bounds that are too narrow.",
+                             fmt::join(names, ", "));
+}
+
+std::string describeRemainder(const Diagnosis& diagnosis) {
+  const Remainder& remainder = *diagnosis.remainder;
+  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
+  std::string text =
+      fmt::format("What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}).",
+                  remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
+                  toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+  if (const Index outside = remainder.findOutside(parameters); outside >= 0) {
+    text += fmt::format(" It would move {} out of its bounds: no estimate.",
+                        parameters[static_cast<std::size_t>(outside)].name.text);
+  }
+  return text;
 }
 
 TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters) {
@@ -112,6 +130,9 @@ TextRows listParameterRows(const Diagnosis& diagnosis) {
 
 TextRows listRemainderRows(const Diagnosis& diagnosis) {
   const Remainder& remainder = *diagnosis.remainder;
+  if (remainder.findOutside(diagnosis.corrected.model.parameters) >= 0) {
+    return {};
+  }
   TextRows rows{{"parameter", "unit", "effective", "sd"}};
   for (Index i = 0; i < remainder.mean.size(); ++i) {
     const ParameterSpec& parameter = diagnosis.corrected.model.parameters[static_cast<std::size_t>(i)];
@@ -158,73 +179,12 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number, double l
   return text;
 }
 
-<<<<<<< HEAD
 std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
   const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
   std::string text = fmt::format("{}: {}\n", source, describeFit(diagnosis.before));
-  const std::string noise = describeNoise(diagnosis);
-  text += noise.empty() ? "" : noise + "\n";
-=======
-/// The parameters before and after, and those of the terms.
-std::string makeParameterRows(const Diagnosis& diagnosis) {
-  const SimulatorPosterior &before = diagnosis.before.posterior, &after = diagnosis.after.posterior;
-  const AveragedEstimate& averaged = diagnosis.averaged;
-  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "before", "sd", "after", "sd"}};
-  const auto write = [](const VectorXd& mean, const VectorXd& stddev, Index i,
-                        std::vector<std::string>& row) {
-    row.push_back(i < mean.size() ? toShortText(mean[i], kEstimateDigits) : "-");
-    row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevFigures + 1) : "-");
-  };
-  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
-  const auto shared = static_cast<Index>(diagnosis.shared);
-  for (Index i = 0; i < static_cast<Index>(parameters.size()); ++i) {
-    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
-    rows.push_back({parameter.name.text, parameter.unit});
-    write(before.mean, before.stddev, i < shared ? i : before.mean.size(), rows.back());
-    const bool is_averaged = i < shared && averaged.isGiven();
-    write(is_averaged ? averaged.mean : after.mean, is_averaged ? averaged.stddev : after.stddev, i,
-          rows.back());
+  for (const std::string& line : {describeNoise(diagnosis), describeBounds(diagnosis)}) {
+    text += line.empty() ? "" : line + "\n";
   }
-  return alignRows(rows, 2, "  ");
-}
-
-/// Terms make up for bounds that are too narrow, as they do for what the model lacks.
-std::string warnOfBounds(const Diagnosis& diagnosis) {
-  const std::vector<std::string> names = diagnosis.listAtBounds();
-  return names.empty() ? ""
-                       : fmt::format(
-                             "  The best fit lies at the bounds of {}: widen them first, as terms may "
-                             "make up for bounds that are too narrow.\n",
-                             fmt::join(names, ", "));
-}
-
-/// What is left, and the parameters with it.
-std::string describeRemainder(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
-  std::string text =
-      fmt::format("  What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}).",
-                  remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
-                  toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
-  if (const Index outside = remainder.findOutside(parameters); outside >= 0) {
-    return text + fmt::format(" It would move {} out of its bounds: no estimate.\n",
-                              parameters[static_cast<std::size_t>(outside)].name.text);
-  }
-  text += " With it:\n";
-  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "effective", "sd"}};
-  for (Index i = 0; i < remainder.mean.size(); ++i) {
-    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
-    rows.push_back({parameter.name.text, parameter.unit, toShortText(remainder.mean[i], kEstimateDigits),
-                    toShortText(remainder.stddevs[i], kStddevFigures + 1)});
-  }
-  return text + alignRows(rows, 2, "  ");
-}
-
-}  // namespace
-
-std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
-  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
-  std::string text = fmt::format("{}: {}\n", source, describeFit(diagnosis.before));
-  text += warnOfBounds(diagnosis);
->>>>>>> 08ab13b1d61b44de169740bb0ae56e78ddd2c1a7
   for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
     if (!diagnosis.steps[i].ranked.empty()) {
       text += describeStep(diagnosis.steps[i], i + 1, diagnosis.level) +

@@ -14,11 +14,14 @@ std::string describeFit(const ExplainedFit& fit);
 /// "Noise as the residual has it: sd 0.0002 (x)", of outputs whose noise is unknown; "" without such.
 std::string describeNoise(const Diagnosis& diagnosis);
 
+/// "The best fit lies at the bounds of k: ..."; "" where it does not.
+std::string describeBounds(const Diagnosis& diagnosis);
+
 /// What a step found, in lines. level: Diagnosis::level.
 std::string describeStep(const DiagnosisStep& step, std::size_t number, double level);
 
 /// "What remains is as a force on x of sd 0.03 N, ...".
-std::string describeRemainder(const Remainder& remainder);
+std::string describeRemainder(const Diagnosis& diagnosis);
 
 /// Headings, then rows of cells.
 using TextRows = std::vector<std::vector<std::string>>;
@@ -29,7 +32,8 @@ TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec
 /// The parameters before and after, and those of the terms.
 TextRows listParameterRows(const Diagnosis& diagnosis);
 
-/// The machine's parameters with what remains; where there is a remainder.
+/// The machine's parameters with what remains, where there is a remainder; empty where it moves one out of
+/// its bounds.
 TextRows listRemainderRows(const Diagnosis& diagnosis);
 
 /// For people: how well the model explains the recordings, each term that was found with its rivals, the

@@ -56,6 +56,8 @@ Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment
   }
   const std::string noise = describeNoise(diagnosis);
   section.html += noise.empty() ? "" : makeParagraph(noise + ".");
+  const std::string bounds = describeBounds(diagnosis);
+  section.html += bounds.empty() ? "" : makeParagraph(bounds);
   if (!diagnosis.after.isExplained()) {
     section.html +=
         makeLines(std::string(diagnosis.getStatus()) + ": " + describeNotice(Notice::kModelIncomplete));
@@ -92,9 +94,9 @@ Section makeParameters(const Diagnosis& diagnosis) {
     section.html += makeParagraph("No estimate: " + diagnosis.after.posterior.message + ".");
   }
   if (diagnosis.remainder) {
-    section.html +=
-        makeParagraph(describeRemainder(*diagnosis.remainder)) +
-        makeTable("remainder-table", "Parameters with what remains.", listRemainderRows(diagnosis));
+    const TextRows rows = listRemainderRows(diagnosis);
+    section.html += makeParagraph(describeRemainder(diagnosis)) +
+                    (rows.empty() ? "" : makeTable("remainder-table", "Parameters with what remains.", rows));
   }
   return section;
 }
