@@ -126,6 +126,7 @@ class Diagnoser {
     if (!is_given) {
       setTied(current, step);
     }
+    step.log_evidence = ranked.front().finding.log_evidence;
     CurrentFit next = addFitted(current, ranked.front());
     if (!is_given) {
       step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
@@ -151,6 +152,7 @@ class Diagnoser {
     }
     step.ranked.insert(step.ranked.begin(), first);
     step.partner = pair.second;
+    step.log_evidence = pair.log_evidence;
     fits_.push_back(pair.fit);
     tied_.emplace_back();
   }
@@ -281,6 +283,20 @@ class Diagnoser {
       diagnosis.remainder =
           findRemainder(diagnosis.corrected, recordings_, diagnosis.after.posterior.best, shared_);
     }
+    if (diagnosis.found > 0 && options_.accepted.empty()) {
+      diagnosis.process = findBetterProcess(diagnosis);
+    }
+  }
+
+  /// Instead of all terms.
+  std::optional<Remainder> findBetterProcess(const Diagnosis& diagnosis) const {
+    double of_terms = 0.0;
+    for (std::size_t i = 0; i < diagnosis.found; ++i) {
+      of_terms += diagnosis.steps[i].log_evidence;
+    }
+    std::optional<Remainder> process =
+        findRemainder(fits_.front().experiment, recordings_, diagnosis.before.posterior.best, shared_);
+    return process && process->log_evidence > of_terms + kTiedEvidence ? process : std::nullopt;
   }
 
   const RecordedFeatures& recordings_;
@@ -334,7 +350,10 @@ std::vector<std::string> Diagnosis::listAtBounds() const {
 }
 
 const char* Diagnosis::getStatus() const {
-  return getNotice(after.isExplained() ? Notice::kOk : Notice::kModelIncomplete).name;
+  if (!after.isExplained()) {
+    return getNotice(Notice::kModelIncomplete).name;
+  }
+  return getNotice(found > 0 && !after.posterior.isReliable() ? Notice::kUnreliable : Notice::kOk).name;
 }
 
 std::vector<std::string> Diagnosis::listTerms() const {

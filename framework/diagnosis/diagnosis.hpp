@@ -53,6 +53,7 @@ struct DiagnosisStep {
   std::vector<TermRival> rivals{};         ///< of terms of earlier steps
   std::string advice{};                    ///< which second test would, where they can be
   bool found = false;                      ///< whether the first one is missing
+  double log_evidence = 0.0;               ///< of what was found against nothing more
 };
 
 /// A term of a model that was found, its coefficient and own scales the parameters from `first` on.
@@ -95,12 +96,16 @@ struct Diagnosis {
   ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;
+  /// A process in the place of all terms that were found: where it has more evidence than they have, as the
+  /// random force of wind or of a drive's chatter would.
+  std::optional<Remainder> process;
 
   /// Parameters whose best value before any term is within a hundredth of their bounds' width from a bound;
   /// none where the noise explains the recordings.
   std::vector<std::string> listAtBounds() const;
 
-  /// "ok", or "model_incomplete" where something is left unexplained.
+  /// "model_incomplete" where something is left unexplained; "unreliable" where the terms explain all, but no
+  /// posterior with them is to be believed; else "ok".
   const char* getStatus() const;
 
   /// The names of the terms.

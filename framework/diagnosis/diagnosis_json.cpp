@@ -151,6 +151,9 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
   if (diagnosis.remainder) {
     json["remainder"] = makeRemainderJson(*diagnosis.remainder, parameters);
   }
+  if (diagnosis.process) {
+    json["process"] = makeRemainderJson(*diagnosis.process, parameters);
+  }
   for (const DiagnosisStep& step : diagnosis.steps) {
     json["steps"].push_back(makeStepJson(step, parameters));
   }

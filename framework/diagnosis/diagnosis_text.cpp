@@ -46,11 +46,23 @@ void addEstimate(const VectorXd& mean, const VectorXd& stddev, Index i, std::vec
   row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevFigures + 1) : "-");
 }
 
-/// What is left, and the parameters with it.
-std::string makeRemainderText(const Diagnosis& diagnosis) {
-  const TextRows rows = listRemainderRows(diagnosis);
-  return "  " + describeRemainder(diagnosis) +
-         (rows.empty() ? "\n" : " With it:\n" + alignRows(rows, 2, "  "));
+/// "a force on x of sd 0.03 N, which changes within 0.1 s (log evidence 57.0)"
+std::string describeSize(const Remainder& remainder) {
+  return fmt::format("{} of sd {} {}, which changes within {} s (log evidence {:.1f})", remainder.what,
+                     toShortText(remainder.stddev, kStddevFigures), remainder.unit,
+                     toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+}
+
+std::string describeOutside(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
+  const Index outside = remainder.findOutside(parameters);
+  return outside < 0 ? ""
+                     : fmt::format(" It would move {} out of its bounds: no estimate.",
+                                   parameters[static_cast<std::size_t>(outside)].name.text);
+}
+
+/// What it is, and the parameters with it.
+std::string makeProcessText(const std::string& what, const TextRows& rows) {
+  return "  " + what + (rows.empty() ? "\n" : " With it:\n" + alignRows(rows, 2, "  "));
 }
 
 }  // namespace
@@ -84,17 +96,14 @@ std::string describeBounds(const Diagnosis& diagnosis) {
 }
 
 std::string describeRemainder(const Diagnosis& diagnosis) {
-  const Remainder& remainder = *diagnosis.remainder;
-  const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
-  std::string text =
-      fmt::format("What remains is as {} of sd {} {}, which changes within {} s (log evidence {:.1f}).",
-                  remainder.what, toShortText(remainder.stddev, kStddevFigures), remainder.unit,
-                  toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
-  if (const Index outside = remainder.findOutside(parameters); outside >= 0) {
-    text += fmt::format(" It would move {} out of its bounds: no estimate.",
-                        parameters[static_cast<std::size_t>(outside)].name.text);
-  }
-  return text;
+  return "What remains is as " + describeSize(*diagnosis.remainder) + "." +
+         describeOutside(*diagnosis.remainder, diagnosis.corrected.model.parameters);
+}
+
+std::string describeProcess(const Diagnosis& diagnosis) {
+  return "Instead of all that: " + describeSize(*diagnosis.process) +
+         " explains more, as wind, ground motion or the chatter of a drive would." +
+         describeOutside(*diagnosis.process, diagnosis.corrected.model.parameters);
 }
 
 TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters) {
@@ -128,14 +137,13 @@ TextRows listParameterRows(const Diagnosis& diagnosis) {
   return rows;
 }
 
-TextRows listRemainderRows(const Diagnosis& diagnosis) {
-  const Remainder& remainder = *diagnosis.remainder;
-  if (remainder.findOutside(diagnosis.corrected.model.parameters) >= 0) {
+TextRows listRemainderRows(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
+  if (remainder.findOutside(parameters) >= 0) {
     return {};
   }
   TextRows rows{{"parameter", "unit", "effective", "sd"}};
   for (Index i = 0; i < remainder.mean.size(); ++i) {
-    const ParameterSpec& parameter = diagnosis.corrected.model.parameters[static_cast<std::size_t>(i)];
+    const ParameterSpec& parameter = parameters[static_cast<std::size_t>(i)];
     rows.push_back({parameter.name.text, parameter.unit});
     addEstimate(remainder.mean, remainder.stddevs, i, rows.back());
   }
@@ -206,8 +214,13 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
   }
   if (!diagnosis.after.isExplained()) {
     text += fmt::format("{}: {}\n", diagnosis.getStatus(), describeNotice(Notice::kModelIncomplete));
-    text += diagnosis.remainder ? makeRemainderText(diagnosis) : "";
+    text += diagnosis.remainder ? makeProcessText(describeRemainder(diagnosis),
+                                                  listRemainderRows(*diagnosis.remainder, parameters))
+                                : "";
   }
+  text += diagnosis.process
+              ? makeProcessText(describeProcess(diagnosis), listRemainderRows(*diagnosis.process, parameters))
+              : "";
   return text;
 }
 

@@ -23,6 +23,9 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number, double l
 /// "What remains is as a force on x of sd 0.03 N, ...".
 std::string describeRemainder(const Diagnosis& diagnosis);
 
+/// "Instead of all that: a force on x of sd 0.03 N ..."; where there is such a process.
+std::string describeProcess(const Diagnosis& diagnosis);
+
 /// Headings, then rows of cells.
 using TextRows = std::vector<std::vector<std::string>>;
 
@@ -32,9 +35,8 @@ TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec
 /// The parameters before and after, and those of the terms.
 TextRows listParameterRows(const Diagnosis& diagnosis);
 
-/// The machine's parameters with what remains, where there is a remainder; empty where it moves one out of
-/// its bounds.
-TextRows listRemainderRows(const Diagnosis& diagnosis);
+/// The machine's parameters with a process; empty where it moves one out of its bounds.
+TextRows listRemainderRows(const Remainder& remainder, const std::vector<ParameterSpec>& parameters);
 
 /// For people: how well the model explains the recordings, each term that was found with its rivals, the
 /// parameters before and after, what remains. source: names the recordings.

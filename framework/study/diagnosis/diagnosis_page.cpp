@@ -86,6 +86,12 @@ Section makeTerms(const Diagnosis& diagnosis) {
   return section;
 }
 
+std::string makeProcess(const std::string& id, const std::string& what, const Remainder& process,
+                        const Diagnosis& diagnosis) {
+  const TextRows rows = listRemainderRows(process, diagnosis.corrected.model.parameters);
+  return makeParagraph(what) + (rows.empty() ? "" : makeTable(id, "Parameters with that.", rows));
+}
+
 Section makeParameters(const Diagnosis& diagnosis) {
   Section section{"parameters", "Parameters", "", {}};
   section.html = makeTable("parameters-table", "By the model, and with what was found missing.",
@@ -94,9 +100,11 @@ Section makeParameters(const Diagnosis& diagnosis) {
     section.html += makeParagraph("No estimate: " + diagnosis.after.posterior.message + ".");
   }
   if (diagnosis.remainder) {
-    const TextRows rows = listRemainderRows(diagnosis);
-    section.html += makeParagraph(describeRemainder(diagnosis)) +
-                    (rows.empty() ? "" : makeTable("remainder-table", "Parameters with what remains.", rows));
+    section.html +=
+        makeProcess("remainder-table", describeRemainder(diagnosis), *diagnosis.remainder, diagnosis);
+  }
+  if (diagnosis.process) {
+    section.html += makeProcess("process-table", describeProcess(diagnosis), *diagnosis.process, diagnosis);
   }
   return section;
 }
