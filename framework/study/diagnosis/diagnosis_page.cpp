@@ -10,7 +10,8 @@
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/verdict.hpp"
-#include "framework/study/diagnosis/diagnosis_figures.hpp"
+#include "framework/study/diagnosis/force_figures.hpp"
+#include "framework/study/diagnosis/residual_figures.hpp"
 
 namespace twinmap {
 namespace {
