@@ -1,6 +1,5 @@
 #include "framework/diagnosis/blind_spots.hpp"
 
-#include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -12,11 +11,7 @@ using Eigen::VectorXd;
 
 std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                       double level) {
-  if (hasUnknownNoise(experiment.noise)) {
-    throw ExperimentError(experiment.name.where, experiment.name.text,
-                          "has noise of unknown size, without which nobody knows what would go unnoticed; "
-                          "give 'noise.stddev' a number");
-  }
+  requireKnownNoise(experiment, "what would go unnoticed");
   const VectorXd center = calcBoxCenter(collectUnknown(experiment.model));
   const ScoredCandidates scored = scoreCandidates(experiment, recordings, center);
   const double needed = calcCriticalZ(level, scored.tested) + calcCriticalZ(0.1, 1);  // 95 %, one-sided

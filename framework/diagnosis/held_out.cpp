@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "framework/base/random/scrambled_sobol.hpp"
+#include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -129,6 +130,7 @@ void setPredictiveTest(const VectorXd& residual, const MatrixXd& jacobian, const
 
 KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                           const SimulatorPosteriorOptions& options) {
+  requireKnownNoise(experiment, "how well a prediction must fit");
   const RecordingsProblem problem(experiment, recordings);
   const auto u = static_cast<Index>(problem.getUnknown().size());
   const auto p = static_cast<Index>(experiment.model.parameters.size());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/text/source_location.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -27,6 +29,14 @@ double calcMeanSquare(const WhitenedResidual& fit, const std::vector<std::string
 bool hasUnknownNoise(const NoiseSpec& noise) {
   return std::any_of(noise.stddev.begin(), noise.stddev.end(),
                      [](const OutputNoiseSpec& one) { return one.stddev.unknown; });
+}
+
+void requireKnownNoise(const ExperimentSpec& experiment, const std::string& question) {
+  if (hasUnknownNoise(experiment.noise)) {
+    throw ExperimentError(experiment.name.where, experiment.name.text,
+                          "has noise of unknown size, without which nobody knows " + question +
+                              "; give 'noise.stddev' a number");
+  }
 }
 
 NoiseSpec sizeNoise(const NoiseSpec& stated, const WhitenedResidual& fit,

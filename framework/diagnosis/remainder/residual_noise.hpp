@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
-#include "framework/experiment/noise_spec.hpp"
+#include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap {
 
 bool hasUnknownNoise(const NoiseSpec& noise);
+
+/// Throws ExperimentError where it has, as nobody knows then what `question` asks.
+void requireKnownNoise(const ExperimentSpec& experiment, const std::string& question);
 
 /// A fit's residual, whitened with the noise that `used` says.
 struct WhitenedResidual {
