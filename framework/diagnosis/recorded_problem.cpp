@@ -106,7 +106,8 @@ RecordedFeatures RecordedFeatures::leaveOut(std::size_t recording) const {
 
 void append(const RecordedFeatures& more, RecordedFeatures& recordings) {
   recordings.features.insert(recordings.features.end(), more.features.begin(), more.features.end());
-  recordings.excitations.insert(recordings.excitations.end(), more.excitations.begin(), more.excitations.end());
+  recordings.excitations.insert(recordings.excitations.end(), more.excitations.begin(),
+                                more.excitations.end());
   if (!recordings.excitations.empty() && recordings.excitations.size() < recordings.features.size()) {
     throw MeasurementError("some recordings have a column of the measured excitation, and others have not");
   }

@@ -26,8 +26,8 @@ struct RecordedFeatures {
 /// The recordings behind those that are there.
 void append(const RecordedFeatures& more, RecordedFeatures& recordings);
 
-/// One window of a table, with the excitation that was measured in it, where it has its columns. start: time in it that is 0 of the model; none: as the experiment says. Throws
-/// MeasurementError.
+/// One window of a table, with the excitation that was measured in it, where it has its columns. start: time
+/// in it that is 0 of the model; none: as the experiment says. Throws MeasurementError.
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const Eigen::VectorXd& known);
 

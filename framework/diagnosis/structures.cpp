@@ -51,9 +51,8 @@ void holdOutEach(const ExperimentSpec& experiment, const RecordedFeatures& recor
                  const SimulatorPosteriorOptions& options, StructureFit& fit) {
   double squares = 0.0;
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
-    const HeldOutPrediction prediction =
-        predictHeldOut(experiment, recordings.select({k}),
-                       inferMachine(experiment, recordings.leaveOut(k), options));
+    const HeldOutPrediction prediction = predictHeldOut(
+        experiment, recordings.select({k}), inferMachine(experiment, recordings.leaveOut(k), options));
     squares += prediction.rms * prediction.rms;
     fit.held_out_p = std::min(fit.held_out_p, prediction.p_value);
   }
