@@ -79,8 +79,7 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   return infer(table, start, found, known);
 }
 
-DirectInference::LikeRecording* DirectInference::follow(const Table& table,
-                                                        std::optional<double> start) {
+DirectInference::LikeRecording* DirectInference::follow(const Table& table, std::optional<double> start) {
   std::optional<ExperimentSpec> experiment = reader_.follow(table, start);
   if (!experiment) {
     return nullptr;

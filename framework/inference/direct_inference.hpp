@@ -24,9 +24,9 @@ class DirectInference final : public MeasurementInference {
   MissingCells getMissingCells() const override { return MissingCells::kKeep; }
 
   /// Where samples would be interpolated, features are taken at the times of the table
-  /// and the excitation is that of the table, where it has one (MeasurementReader::follow). Samples that the table lacks are left out of the likelihood
-  /// (MeasurementReader::readAvailableFeatures); standard deviations that it states go before the
-  /// experiment's.
+  /// and the excitation is that of the table, where it has one (MeasurementReader::follow). Samples that the
+  /// table lacks are left out of the likelihood (MeasurementReader::readAvailableFeatures); standard
+  /// deviations that it states go before the experiment's.
   InferredMeasurement infer(const Table& table, std::optional<double> start,
                             const Eigen::VectorXd& known) override;
   /// From what the reader found in the table.
@@ -58,7 +58,7 @@ class DirectInference final : public MeasurementInference {
   SimulatorPosteriorOptions options_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
   std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
-  std::unique_ptr<LikeRecording> followed_;            // of the last table that was followed
+  std::unique_ptr<LikeRecording> followed_;              // of the last table that was followed
 };
 
 }  // namespace twinmap

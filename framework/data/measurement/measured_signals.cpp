@@ -79,7 +79,8 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
 
 /// Repeats the first and the last value, so that the table goes from `begin` to `end` at least.
 void holdEnds(TableSpec& table, double begin, double end) {
-  const double step = (table.times.back() - table.times.front()) / static_cast<double>(table.times.size() - 1);
+  const double step =
+      (table.times.back() - table.times.front()) / static_cast<double>(table.times.size() - 1);
   const auto count = [&](double missing) {
     return missing > kSameTime * step ? static_cast<std::size_t>(std::ceil(missing / step)) : 0;
   };
