@@ -3,6 +3,7 @@ import csv
 import io
 import json
 import math
+import random
 import re
 import unittest
 
@@ -37,8 +38,36 @@ class Diagnose(FolderTestCase):
         self.assertTrue(found["complete"])
         self.assertIn("None of", self.diagnose(CART, self.sound))
 
+    def blow(self, seed):
+        """A recording of a cart in gusts: random steps of a force that forgets itself within .2 s."""
+        numbers = random.Random(seed)
+        gust, times, values = 0.0, [], []
+        for i in range(251):
+            gust = math.exp(-0.1) * gust + 0.02 * math.sqrt(1 - math.exp(-0.2)) * numbers.gauss(0, 1)
+            times.append(0.02 * i)
+            values.append(gust)
+        text = CART.read_text().replace(
+            "  F: {unit", f"  W: {{unit: N, tables: [{{times: {times}, values: {values}}}]}}\n  F: {{unit"
+        )
+        windy = self.folder / "windy.yaml"
+        windy.write_text(text.replace("force: F - k3", "force: F + W - k3"))
+        path = self.folder / f"gusts{seed}.csv"
+        result = call("simulate", windy, "--noise", "--csv", path, "parameters.k=95")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return path
+
+    def test_names_a_random_force_before_terms_that_stand_in_for_it(self):
+        for seed in (1, 2, 3):
+            found = json.loads(self.diagnose(CART, self.blow(seed), "--json"))
+            process = found["process"] if found["found"] else found["remainder"]
+            self.assertEqual(process["what"], "a force on x")
+            for name, truth in (("k", 95), ("d", 1.25), ("k3", 3000)):
+                one = process["parameters"][name]
+                self.assertLess(abs(one["mean"] - truth), 4 * one["sd"])
+
     def test_names_the_friction_and_mends_the_parameters(self):
         found = json.loads(self.diagnose(CART, self.rubbing, "--json"))
+        self.assertNotIn("process", found)
         self.assertEqual(found["found"], ["coulomb.x"])
         self.assertFalse(found["before"]["explained"])
         self.assertTrue(found["after"]["explained"])
@@ -91,6 +120,15 @@ class Diagnose(FolderTestCase):
         inferred = json.loads(result.stdout)
         self.assertNotIn("model_mismatch", inferred["statuses"])
         self.assertIn("coulomb_x", inferred["parameters"])
+
+    def test_noise_of_unknown_size_has_no_held_out_test(self):
+        unknown = self.folder / "unknown.yaml"
+        unknown.write_text(CART.read_text().replace("stddev: {x: 1e-4}", "stddev: {x: unknown}"))
+        result = call("validate", unknown, self.sound, "--against", self.rubbing)
+        self.assertEqual(result.returncode, 2, result.stdout)
+        self.assertIn(
+            "has noise of unknown size, without which nobody knows how well a prediction must fit", result.stderr
+        )
 
     def test_says_what_a_test_is_blind_to(self):
         spots = {spot["term"]: spot for spot in json.loads(self.diagnose(CART, "--json"))["blind_spots"]}
