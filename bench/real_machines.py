@@ -110,7 +110,7 @@ Written by `bench/real_machines.py TWINMAP FOLDER` from recordings that others p
 [diagnosed](../how-to/find-what-a-model-lacks.md), and the corrected model predicts other windows. Residuals are in standard deviations of the
 stated noise: 1 is as good as the sensors. "Terms given" (`--accept`) are those of the publishers' own model, and delays that others saw.
 Seconds are of a processor. Standard deviations beside a model that misfits are of the noise alone. The pendulum's windows, and noise or
-bounds of EMPS, the fork and the pendulum, were set after results had been seen: this page shows what can be had, it is no blind test.
+bounds of EMPS, the fork and the pendulum, were set after results had been seen: this page shows what can be had, it is not a blind test.
 
 """
 

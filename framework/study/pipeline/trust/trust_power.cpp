@@ -42,8 +42,8 @@ MatrixXd drawNoise(const NoiseCovariance& covariance, const NoiseWhitener& noise
   return covariance * noise.applyTransposed(white);
 }
 
-/// The share of cases found where stencil i is moved by size * directions[i]; once it is below `least`, what it
-/// is at most.
+/// The share of cases found where stencil i is moved by size * directions[i]; once it is below `least`, what
+/// it is at most.
 double calcShareFound(const PowerCases& cases, const std::vector<VectorXd>& directions, double size,
                       double least = 0.0) {
   const Index count = cases.noise.cols();
