@@ -350,7 +350,7 @@ std::vector<std::string> Diagnosis::listAtBounds() const {
 }
 
 const char* Diagnosis::getStatus() const {
-  if (!after.isExplained()) {
+  if (isIncomplete()) {
     return getNotice(Notice::kModelIncomplete).name;
   }
   return getNotice(found > 0 && !after.posterior.isReliable() ? Notice::kUnreliable : Notice::kOk).name;

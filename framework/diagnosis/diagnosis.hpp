@@ -104,8 +104,10 @@ struct Diagnosis {
   /// none where the noise explains the recordings.
   std::vector<std::string> listAtBounds() const;
 
-  /// "model_incomplete" where something is left unexplained; "unreliable" where the terms explain all, but no
-  /// posterior with them is to be believed; else "ok".
+  /// Whether something is left unexplained, or a random force explains more than the terms that were found.
+  bool isIncomplete() const { return !after.isExplained() || process; }
+  /// "model_incomplete" where it is; "unreliable" where the terms explain all, but no posterior with them is
+  /// to be believed; else "ok".
   const char* getStatus() const;
 
   /// The names of the terms.

@@ -212,7 +212,7 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
           "evidence.\n";
     }
   }
-  if (!diagnosis.after.isExplained()) {
+  if (diagnosis.isIncomplete()) {
     text += fmt::format("{}: {}\n", diagnosis.getStatus(), describeNotice(Notice::kModelIncomplete));
     text += diagnosis.remainder ? makeProcessText(describeRemainder(diagnosis),
                                                   listRemainderRows(*diagnosis.remainder, parameters))

@@ -59,7 +59,7 @@ Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment
   section.html += noise.empty() ? "" : makeParagraph(noise + ".");
   const std::string bounds = describeBounds(diagnosis);
   section.html += bounds.empty() ? "" : makeParagraph(bounds);
-  if (!diagnosis.after.isExplained()) {
+  if (diagnosis.isIncomplete()) {
     section.html +=
         makeLines(std::string(diagnosis.getStatus()) + ": " + describeNotice(Notice::kModelIncomplete));
   }
