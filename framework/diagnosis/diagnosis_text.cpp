@@ -101,8 +101,8 @@ std::string describeRemainder(const Diagnosis& diagnosis) {
 }
 
 std::string describeProcess(const Diagnosis& diagnosis) {
-  return "Instead of all that: " + describeSize(*diagnosis.process) +
-         " explains more, as wind, ground motion or the chatter of a drive would." +
+  return "A random process explains more than all terms found: " + describeSize(*diagnosis.process) +
+         ". Wind, ground motion or the chatter of a drive are such." +
          describeOutside(*diagnosis.process, diagnosis.corrected.model.parameters);
 }
 
@@ -193,6 +193,9 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
   for (const std::string& line : {describeNoise(diagnosis), describeBounds(diagnosis)}) {
     text += line.empty() ? "" : line + "\n";
   }
+  text += diagnosis.process
+              ? makeProcessText(describeProcess(diagnosis), listRemainderRows(*diagnosis.process, parameters))
+              : "";
   for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
     if (!diagnosis.steps[i].ranked.empty()) {
       text += describeStep(diagnosis.steps[i], i + 1, diagnosis.level) +
@@ -218,9 +221,6 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
                                                   listRemainderRows(*diagnosis.remainder, parameters))
                                 : "";
   }
-  text += diagnosis.process
-              ? makeProcessText(describeProcess(diagnosis), listRemainderRows(*diagnosis.process, parameters))
-              : "";
   return text;
 }
 

@@ -59,6 +59,9 @@ Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment
   section.html += noise.empty() ? "" : makeParagraph(noise + ".");
   const std::string bounds = describeBounds(diagnosis);
   section.html += bounds.empty() ? "" : makeParagraph(bounds);
+  if (diagnosis.process) {
+    section.html += makeParagraph(describeProcess(diagnosis));
+  }
   if (diagnosis.isIncomplete()) {
     section.html +=
         makeLines(std::string(diagnosis.getStatus()) + ": " + describeNotice(Notice::kModelIncomplete));
@@ -105,7 +108,8 @@ Section makeParameters(const Diagnosis& diagnosis) {
         makeProcess("remainder-table", describeRemainder(diagnosis), *diagnosis.remainder, diagnosis);
   }
   if (diagnosis.process) {
-    section.html += makeProcess("process-table", describeProcess(diagnosis), *diagnosis.process, diagnosis);
+    section.html += makeProcess(
+        "process-table", "With the random process in the place of all terms:", *diagnosis.process, diagnosis);
   }
   return section;
 }
