@@ -44,13 +44,18 @@ std::string makeTable(const std::string& id, const std::string& caption, const T
   return makeHtmlTable(id, caption, rows.front(), cells);
 }
 
+std::string describeMissing(const Diagnosis& diagnosis) {
+  if (diagnosis.process) {
+    return "Missing: " + diagnosis.process->what + ", at random";
+  }
+  return diagnosis.found > 0 ? fmt::format("Missing: {}", fmt::join(diagnosis.listTerms(), ", "))
+                             : "No term is found missing";
+}
+
 Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment,
                     const std::vector<std::string>& names) {
   Section section{"verdict", "Verdict", "", {}};
-  section.html +=
-      makeParagraph(diagnosis.found > 0 ? fmt::format("Missing: {}", fmt::join(diagnosis.listTerms(), ", "))
-                                        : std::string("No term is found missing"),
-                    "class=\"lead\"");
+  section.html += makeParagraph(describeMissing(diagnosis), "class=\"lead\"");
   section.html += makeParagraph("The model: " + describeFit(diagnosis.before) + ".");
   if (diagnosis.found > 0) {
     section.html += makeParagraph("With what is missing: " + describeFit(diagnosis.after) + ".");
