@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "framework/data/measurement/measured_signals.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
 
 namespace twinmap {
@@ -115,11 +116,11 @@ void append(const RecordedFeatures& more, RecordedFeatures& recordings) {
 
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const VectorXd& known) {
-  constexpr double kBeside = 0.25;  // of the duration: for delays that are tried
   RecordedFeatures recording{reader.getLayout(), {}, known};
   std::optional<MeasurementReader> own;
   const double duration = reader.getExperiment().model.simulation.duration;
-  if (std::optional<ExperimentSpec> followed = reader.followExcitation(table, start, kBeside * duration)) {
+  if (std::optional<ExperimentSpec> followed =
+          reader.followExcitation(table, start, kDelayMargin * duration)) {
     recording.excitations.push_back(followed->model.excitation);
     own.emplace(std::move(*followed));
   }

@@ -114,18 +114,17 @@ SharedChoice chooseOnSpread(const MatrixXd& points, const MatrixXd& values, Stop
   const VectorXd found = toLog(best.hyperparameters);
   const auto improve_by = [&](const SharedStructure& structure) {
     const SharedChoice other = search(data, structure, found, kFurtherEvaluations, stop);
-    const bool better = other.negative_log_density < best.negative_log_density;
-    if (better) {
+    if (other.negative_log_density < best.negative_log_density) {
       best = other;
     }
-    return better;
   };
-  const bool rough = improve_by({SmoothCovariance::kMatern52, Trend::kLinear});
+  improve_by({SmoothCovariance::kMatern52, Trend::kLinear});
+  const bool is_rough = best.structure.covariance == SmoothCovariance::kMatern52;
   if (data.points.cols() >= kPointsPerTerm * countTerms(Trend::kQuadratic, p)) {
-    (void)improve_by({SmoothCovariance::kSquaredExponential, Trend::kQuadratic});
-    // Functions that are smooth but for a linear trend are so but for a quadratic one: it was never better.
-    if (rough) {
-      (void)improve_by({SmoothCovariance::kMatern52, Trend::kQuadratic});
+    improve_by({SmoothCovariance::kSquaredExponential, Trend::kQuadratic});
+    // Functions that are smooth but for a linear trend are so but for a quadratic one.
+    if (is_rough) {
+      improve_by({SmoothCovariance::kMatern52, Trend::kQuadratic});
     }
   }
   requireFound(best);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 
@@ -15,6 +16,11 @@ namespace twinmap {
 namespace {
 
 const std::string kNoText;
+
+double toNumber(const std::string& text) {
+  double value = 0.0;
+  return parseLiteral(text, value) ? value : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// Reads cells from a text, one after another.
 class CellReader {
@@ -86,8 +92,7 @@ const std::string& CsvTable::getText(std::size_t row, const std::string& column)
 }
 
 double CsvTable::getNumber(std::size_t row, const std::string& column) const {
-  double value = 0.0;
-  return parseLiteral(getText(row, column), value) ? value : std::numeric_limits<double>::quiet_NaN();
+  return toNumber(getText(row, column));
 }
 
 std::vector<std::string> CsvTable::listTexts(const std::string& column) const {
@@ -99,11 +104,30 @@ std::vector<std::string> CsvTable::listTexts(const std::string& column) const {
 }
 
 std::vector<double> CsvTable::listNumbers(const std::string& column) const {
+  std::vector<std::size_t> all(rows.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return listNumbers(column, all);
+}
+
+std::vector<double> CsvTable::listNumbers(const std::string& column,
+                                          const std::vector<std::size_t>& of_rows) const {
+  const int index = findColumn(column);
   std::vector<double> numbers;
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    numbers.push_back(getNumber(row, column));
+  for (const std::size_t row : of_rows) {
+    numbers.push_back(toNumber(index < 0 ? kNoText : rows[row][static_cast<std::size_t>(index)]));
   }
   return numbers;
+}
+
+std::vector<std::size_t> CsvTable::findRows(const std::string& column, const std::string& text) const {
+  const int index = findColumn(column);
+  std::vector<std::size_t> found;
+  for (std::size_t row = 0; index >= 0 && row < rows.size(); ++row) {
+    if (rows[row][static_cast<std::size_t>(index)] == text) {
+      found.push_back(row);
+    }
+  }
+  return found;
 }
 
 std::vector<std::string> CsvTable::listDistinct(const std::string& column) const {

@@ -24,6 +24,10 @@ struct CsvTable {
   /// The cells of a column.
   std::vector<std::string> listTexts(const std::string& column) const;
   std::vector<double> listNumbers(const std::string& column) const;
+  /// Of some rows.
+  std::vector<double> listNumbers(const std::string& column, const std::vector<std::size_t>& of_rows) const;
+  /// Rows whose cell of a column is `text`.
+  std::vector<std::size_t> findRows(const std::string& column, const std::string& text) const;
   /// The different texts of a column, in the order of their first rows.
   std::vector<std::string> listDistinct(const std::string& column) const;
 };

@@ -63,9 +63,8 @@ TableSpec differentiate(const TableSpec& table) {
 /// Terms move in time, as what was measured does by its clock; a table F of the experiment cannot, so that
 /// F - c F' stands for it, which holds for delays below the time in which the signal bends.
 void delaySignal(ModelSpec& model, std::size_t index, const std::string& by) {
-  constexpr double kBeside = 0.25;  // of the duration: for delays that are tried
   SignalSpec& signal = model.excitation[index];
-  holdMeasuredEnds(signal, model.simulation.duration, kBeside * model.simulation.duration);
+  holdMeasuredEnds(signal, model.simulation.duration, kDelayMargin * model.simulation.duration);
   for (TableSpec& table : signal.tables) {
     if (table.measured) {
       const Expression* delay = table.findDelay();

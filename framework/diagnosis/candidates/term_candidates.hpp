@@ -8,6 +8,9 @@
 
 namespace twinmap {
 
+/// Of the duration: what recordings are read beside it, and signals go on by, for the delays that are tried.
+constexpr double kDelayMargin = 0.25;
+
 /// Forces on each coordinate (damping, friction, springs, stops, a constant force) and between two of a kind.
 std::vector<TermCandidate> listForceCandidates(const ModelSizes& sizes);
 

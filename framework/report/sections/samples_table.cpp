@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
-#include <limits>
 
 #include "framework/analysis/calibration.hpp"
-#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 namespace {
@@ -19,30 +17,6 @@ std::size_t countSamples(const CsvTable& predictions) {
     count += predictions.getText(row, "parameter") == predictions.getText(0, "parameter") ? 1 : 0;
   }
   return count;
-}
-
-std::vector<std::size_t> findRows(const CsvTable& predictions, const std::string& parameter) {
-  const auto column = static_cast<std::size_t>(predictions.findColumn("parameter"));
-  std::vector<std::size_t> rows;
-  for (std::size_t row = 0; row < predictions.rows.size(); ++row) {
-    if (predictions.rows[row][column] == parameter) {
-      rows.push_back(row);
-    }
-  }
-  return rows;
-}
-
-/// Empty if there is no such column. Not by getNumber(), which looks for the column in each of many rows.
-std::vector<double> listNumbers(const CsvTable& predictions, const std::vector<std::size_t>& rows,
-                                const std::string& column) {
-  const int index = predictions.findColumn(column);
-  std::vector<double> numbers;
-  for (const std::size_t row : index < 0 ? std::vector<std::size_t>() : rows) {
-    double value = 0.0;
-    const bool known = parseLiteral(predictions.rows[row][static_cast<std::size_t>(index)], value);
-    numbers.push_back(known ? value : std::numeric_limits<double>::quiet_NaN());
-  }
-  return numbers;
 }
 
 std::vector<double> takeDrawn(std::vector<double> values) {
@@ -77,8 +51,8 @@ double calcPit(double z) {
 }
 
 ParameterPredictions collectPredictions(const RunFolder& run, const std::string& parameter) {
-  const std::vector<std::size_t> rows = findRows(run.predictions, parameter);
-  const auto list = [&](const char* column) { return listNumbers(run.predictions, rows, column); };
+  const std::vector<std::size_t> rows = run.predictions.findRows("parameter", parameter);
+  const auto list = [&](const char* column) { return run.predictions.listNumbers(column, rows); };
   ParameterPredictions found{list("sample"), list("true"), list("inferred"),
                              list("stddev"), {},           list("limit_stddev")};
   const auto is_known = [](double value) { return std::isfinite(value); };
