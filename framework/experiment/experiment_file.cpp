@@ -11,7 +11,8 @@
 #include "framework/experiment/files/signal_files.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
 #include "framework/experiment/sweep/swept_keys.hpp"
-#include "framework/experiment/sweep/trials.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/experiment/trials/trial_trees.hpp"
 
 namespace twinmap {
 namespace {
@@ -28,25 +29,88 @@ YamlNode finishTree(YamlNode root, const std::string& path, const std::vector<st
   return root;
 }
 
-/// With its defaults resolved.
-ExperimentSpec readUnchecked(const YamlNode& root) {
+/// As its tree says, without defaults that depend on other values.
+ExperimentSpec readPlain(const YamlNode& tree) {
   ExperimentSpec experiment;
-  readValue(withoutSweep(selectTrial(root)), experiment);
+  readValue(withoutSweep(tree), experiment);
   requireFewSamples(experiment.features, experiment.name.where);
+  return experiment;
+}
+
+std::string writeTransform(const ExperimentSpec& experiment) {
+  const YamlNode tree = writeValue(experiment);
+  const YamlNode* transform = tree.find("transform");
+  return transform != nullptr ? writeYaml(*transform) : "";
+}
+
+/// The features of all trials go through one transform.
+void requireSameTransform(const ExperimentSpec& base, const ExperimentSpec& trial, const std::string& name) {
+  if (writeTransform(base) != writeTransform(trial)) {
+    throw ExperimentError(trial.name.where, name,
+                          "has a transform of its own, but the features of all trials go through one; give "
+                          "it beside 'trials', or choose one trial");
+  }
+}
+
+/// resolve: whether defaults are to be found, or have been.
+ExperimentSpec readCombined(const std::vector<Trial>& trees, bool resolve) {
+  ExperimentSpec base = readPlain(trees.front().tree);
+  std::vector<TrialExperiment> trials;
+  for (const Trial& tree : trees) {
+    trials.push_back({tree.name, readPlain(tree.tree)});
+    ExperimentSpec& trial = trials.back().experiment;
+    requireSameTransform(base, trial, tree.name);
+    trial.design.sensors.reset();  // of the outputs and signals of all
+    trial.design.excitation.reset();
+    if (resolve) {
+      resolveDefaults(trial);
+    }
+  }
+  ExperimentSpec combined = combineTrials(std::move(base), std::move(trials));
+  if (resolve) {
+    resolveDefaults(combined);
+  }
+  return combined;
+}
+
+/// With its defaults resolved; all trials where none is chosen.
+ExperimentSpec readUnchecked(const YamlNode& root) {
+  const YamlNode tree = selectTrial(root);
+  if (hasTrials(tree)) {
+    return readCombined(expandTrials(tree), true);
+  }
+  ExperimentSpec experiment = readPlain(tree);
   resolveDefaults(experiment);
   return experiment;
+}
+
+/// The tree of an experiment that combines trials, from those of each.
+YamlNode writeCombined(const ExperimentSpec& experiment) {
+  std::vector<Trial> trees;
+  for (const TrialExperiment& trial : experiment.trials) {
+    ExperimentSpec own = trial.experiment;
+    own.noise.replicates = experiment.noise.replicates;
+    trees.push_back({trial.name, writeValue(own)});
+  }
+  return joinTrials(writeValue(experiment), trees);
 }
 
 }  // namespace
 
 ExperimentSpec readExperiment(const YamlNode& root) {
   const ExperimentSpec experiment = readUnchecked(root);
-  checkExperiment(experiment);
+  for (const TrialExperiment& trial : experiment.trials) {
+    checkExperiment(trial.experiment);
+  }
+  experiment.trials.empty() ? checkExperiment(experiment) : checkBesideModel(experiment);
   return experiment;
 }
 
 ExperimentSpec readExperimentOfCheckedModel(const YamlNode& root) {
   const ExperimentSpec experiment = readUnchecked(root);
+  for (const TrialExperiment& trial : experiment.trials) {
+    checkBesideModel(trial.experiment);
+  }
   checkBesideModel(experiment);
   return experiment;
 }
@@ -65,12 +129,16 @@ ExperimentSpec loadExperiment(const std::string& path, const std::vector<std::st
 }
 
 std::string writeExperiment(const ExperimentSpec& experiment) {
-  return writeYaml(writeValue(experiment));
+  return writeYaml(experiment.trials.empty() ? writeValue(experiment) : writeCombined(experiment));
 }
 
 ExperimentSpec readResolved(const std::string& text) {
+  const YamlNode tree = parseYaml(text, "resolved.yaml");
+  if (hasTrials(tree)) {
+    return readCombined(expandTrials(tree), false);
+  }
   ExperimentSpec experiment;
-  readValue(parseYaml(text, "resolved.yaml"), experiment);
+  readValue(tree, experiment);
   return experiment;
 }
 

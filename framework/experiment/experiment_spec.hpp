@@ -41,6 +41,8 @@ void describe(Fields& f, ReportSpec& s) {
   f.rule(s.over.empty() || s.over.size() == 2, "must name two parameters in 'over'");
 }
 
+struct TrialExperiment;
+
 /// A whole experiment, as described by one YAML file.
 struct ExperimentSpec {
   Name name;
@@ -60,6 +62,7 @@ struct ExperimentSpec {
   MeasurementSpec measurement;  ///< for inferring from files; no simulation depends on it
   ReportSpec report;
   std::vector<CandidateSpec> candidates;  ///< terms that the model may lack, for a diagnosis
+  std::vector<TrialExperiment> trials;    ///< that it combines (combineTrials); empty for one alone
 
   // compiled once (experiment_spec.cpp)
   ExperimentSpec();
@@ -68,6 +71,12 @@ struct ExperimentSpec {
   ExperimentSpec& operator=(const ExperimentSpec&);
   ExperimentSpec& operator=(ExperimentSpec&&) noexcept;
   ~ExperimentSpec();
+};
+
+/// One of several experiments with the same machine, as if it were alone.
+struct TrialExperiment {
+  std::string name;
+  ExperimentSpec experiment;
 };
 
 template <class Fields>

@@ -7,6 +7,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/temporary_folder.hpp"
 #include "framework/estimation/box_prior.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/export/c_code/c_source.hpp"
 #include "framework/export/fmu_description.hpp"
 #include "framework/export/runtime_sources.hpp"
@@ -99,6 +100,7 @@ std::string compile(const std::string& fmu, const std::filesystem::path& folder,
 }  // namespace
 
 void writeFmu(const ExportedModel& model, const std::filesystem::path& file, int version) {
+  requireOneTrial(model.experiment, "an FMU infers from the signals of one recording");
   if (!model.takesSignals()) {
     throw ExperimentError("export --fmu: the features are modes, which no signal gives");
   }

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "framework/base/text/nearest_name.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/experiment/sweep/trials.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 
 namespace twinmap {
@@ -206,9 +206,7 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
                                   [&](const Member& member) { return member.name == trial; });
   if (found == members_.end()) {
     const bool has_trials = members_.size() > 1 || !members_.front().name.empty();
-    throw ExperimentError("'" + trial + "' is not a trial of the experiment: it has " +
-                          (has_trials ? listNames(listTrials()) + suggestName(trial, listTrials())
-                                      : "none; leave out --trial, several files go behind --joint"));
+    throwUnknownTrial(trial, has_trials ? listTrials() : std::vector<std::string>{});
   }
   return *found;
 }

@@ -3,6 +3,7 @@
 #include "framework/models/external/program_simulator.hpp"
 #include "framework/models/fmu/fmu_simulator.hpp"
 #include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/models/trials_simulator.hpp"
 #include "framework/simulation/simulation_failure.hpp"
 
 namespace twinmap {
@@ -10,6 +11,12 @@ namespace {
 
 std::unique_ptr<Simulator> make(const ModelSpec& model, const Eigen::VectorXd& times, int modes,
                                 ModelCheck check) {
+  if (!model.trials.empty()) {
+    return std::make_unique<TrialsSimulator>(
+        model, times, modes, [&](const ModelSpec& trial, const Eigen::VectorXd& own_times, int own_modes) {
+          return make(trial, own_times, own_modes, check);
+        });
+  }
   if (model.source && model.simulation.portable) {
     throw ExperimentError(
         "simulation.portable: true cannot be held for a model from elsewhere: what an FMU or a program "

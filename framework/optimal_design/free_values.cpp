@@ -70,8 +70,18 @@ FreeNumber makeNumber(const std::string& key, const YamlNode& node, const FreeVa
   return number;
 }
 
+/// "F.pulses[0].start" or, of a trial, "step.F.pulses[0].start": where that is in the tree.
+std::string findPath(const std::string& key, const YamlNode& tree) {
+  const std::size_t dot = key.find('.');
+  const YamlNode* trials = tree.find("trials");
+  if (trials == nullptr || dot == std::string::npos || trials->find(key.substr(0, dot)) == nullptr) {
+    return "excitation." + key;
+  }
+  return "trials." + key.substr(0, dot) + ".excitation." + key.substr(dot + 1);
+}
+
 void appendNumbers(const FreeValue& free, YamlNode& tree, std::vector<FreeNumber>& numbers) {
-  const Name key{"excitation." + free.key.text, free.key.where};
+  const Name key{findPath(free.key.text, tree), free.key.where};
   writeOutList(tree, key);
   const YamlNode* node = findValue(tree, key);
   if (node == nullptr) {

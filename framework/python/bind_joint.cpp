@@ -3,9 +3,11 @@
 
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/recording_list.hpp"
+#include "framework/inference/trial_reader.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/measured_columns.hpp"
+#include "framework/python/python_map.hpp"
 
 namespace twinmap::python {
 namespace {
@@ -52,9 +54,34 @@ py::tuple inferTogether(const std::string& path, const std::vector<Recorded>& re
                         copyVector(inferred.joint.weights));
 }
 
+/// The features of a map that was trained on several trials, of a recording of each.
+Eigen::VectorXd readTrials(const PythonMap& map, const std::vector<Recorded>& recordings) {
+  const TrialReader reader(map.getReader().getExperiment());
+  std::vector<RecordedTable> tables;
+  for (const auto& [trial, name, columns] : recordings) {
+    tables.push_back({trial, name, readOrMakeTable(name, columns, reader.get(trial).listColumns())});
+  }
+  std::vector<twinmap::Recording> listed;
+  for (const RecordedTable& table : tables) {
+    listed.push_back({table.trial, table.trial, &table.table, {}});
+  }
+  const std::optional<Eigen::VectorXd> features = reader.read(listed);
+  if (!features) {
+    throw MeasurementError(
+        "a map of several trials needs one whole recording of each; infer_together() takes others");
+  }
+  return *features;
+}
+
 }  // namespace
 
 void bindJoint(py::module_& module) {
+  module.def(
+      "read_trials",
+      [](const PythonMap& map, const std::vector<Recorded>& recordings) {
+        return copyVector(readTrials(map, recordings));
+      },
+      py::arg("map"), py::arg("recordings"));
   module.def(
       "infer_together",
       [](const std::string& path, const std::vector<Recorded>& recordings, const std::vector<double>& starts,

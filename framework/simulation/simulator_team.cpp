@@ -51,14 +51,18 @@ void runOnTeam(const Simulator& prototype, int count, int threads,
                const std::function<void(Simulator& simulator, int index)>& task) {
   const int size = chooseThreadCount(threads, count);
   const auto simulators = cloneSerially(prototype, size);
+  runInTeam(count, size, [&](int i, int thread) { task(*simulators[static_cast<std::size_t>(thread)], i); });
+}
+
+void runInTeam(int count, int threads, const std::function<void(int index, int thread)>& task) {
   FirstException failure;
-#pragma omp parallel for num_threads(size) schedule(dynamic)
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (int i = 0; i < count; ++i) {
     if (failure.happened()) {
       continue;
     }
     try {
-      task(*simulators[omp_get_thread_num()], i);
+      task(i, omp_get_thread_num());
     } catch (...) {
       failure.keepCurrent();
     }

@@ -13,4 +13,8 @@ namespace twinmap {
 void runOnTeam(const Simulator& prototype, int count, int threads,
                const std::function<void(Simulator& simulator, int index)>& task);
 
+/// Calls task(i, thread) for i = 0 .. count - 1 on so many threads (at least 1), in order, `thread` counted
+/// from 0. An exception of a task keeps further ones from starting and is thrown again.
+void runInTeam(int count, int threads, const std::function<void(int index, int thread)>& task);
+
 }  // namespace twinmap

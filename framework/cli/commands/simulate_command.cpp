@@ -13,6 +13,7 @@
 #include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 
@@ -103,6 +104,7 @@ void simulate(const SimulateArguments& arguments) {
   const std::vector<ParameterValue> values = takeParameterValues(overrides);
   const ExperimentSpec experiment =
       followNoise(readExperimentWithSignals(loadExperimentTree(arguments.experiment.file, overrides)));
+  requireOneTrial(experiment, "a simulation is of one");
   const Eigen::MatrixXd point = makePoint(experiment.model, values);
   const std::unique_ptr<Simulator> made =
       makeSimulator(experiment.model, collectTimes(experiment.features), countModes(experiment.features));

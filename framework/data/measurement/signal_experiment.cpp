@@ -2,19 +2,20 @@
 
 #include "framework/data/measurement/measured_signals.hpp"
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap {
 
 ExperimentSpec readExperimentWithSignals(const YamlNode& root) {
   ExperimentSpec experiment = readExperiment(root);
-  loadMeasuredSignals(experiment);
+  changeTrials(experiment, loadMeasuredSignals);
   return experiment;
 }
 
 std::vector<SweepCase> expandCasesWithSignals(const YamlNode& root) {
   std::vector<SweepCase> cases = expandCases(root);
   for (SweepCase& one : cases) {
-    loadMeasuredSignals(one.experiment);
+    changeTrials(one.experiment, loadMeasuredSignals);
   }
   return cases;
 }

@@ -8,6 +8,7 @@
 
 #include "framework/base/random/random.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/optimization/box_quadratic.hpp"
 
 namespace twinmap {
 
@@ -20,45 +21,24 @@ namespace {
 constexpr int kReplicates = 1999;
 constexpr double kTimes = 10.0;  // the p-value of the excess itself, which few contradictions need
 
-/// By how much 2 g'd - d'Id grows above 0 within the box of steps: free coordinates by Newton's step, those
-/// that would leave the box held at its side, until none does.
+/// Regular where it determines less than all.
+MatrixXd regularize(MatrixXd information) {
+  constexpr double kShare = 1e-10;  // of the largest: far below what bounds say
+  information.diagonal().array() +=
+      kShare * information.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+  return information;
+}
+
+/// By how much 2 g'd - d'Id grows above 0 within the box of steps.
 double calcGain(const MatrixXd& information, const VectorXd& gradient, const VectorXd& lower,
                 const VectorXd& upper) {
-  const Index u = gradient.size();
-  VectorXd step = VectorXd::Zero(u);
-  std::vector<Index> free(static_cast<std::size_t>(u)), held;
-  std::iota(free.begin(), free.end(), Index{0});
-  for (Index round = 0; round <= u && !free.empty(); ++round) {
-    MatrixXd own = information(free, free);
-    own.diagonal().array() += 1e-10 * own.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-    VectorXd own_gradient = gradient(free);
-    if (!held.empty()) {
-      own_gradient -= information(free, held) * step(held);
-    }
-    step(free) = linalg::solvePositiveDefinite(own, own_gradient);
-    std::vector<Index> inside;
-    for (const Index j : free) {
-      if (step[j] < lower[j] || step[j] > upper[j]) {
-        step[j] = std::clamp(step[j], lower[j], upper[j]);
-        held.push_back(j);
-      } else {
-        inside.push_back(j);
-      }
-    }
-    if (inside.size() == free.size()) {
-      break;
-    }
-    free = std::move(inside);
-  }
+  const VectorXd step = optimization::minimizeQuadratic(regularize(information), -gradient, lower, upper);
   return 2.0 * gradient.dot(step) - step.dot(information * step);
 }
 
 /// A factor F with F F' = information, which may be singular.
 MatrixXd factorizeInformation(const MatrixXd& information) {
-  MatrixXd regular = information;
-  regular.diagonal().array() +=
-      1e-10 * information.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-  return linalg::calcCholesky(regular).lower;
+  return linalg::calcCholesky(regularize(information)).lower;
 }
 
 /// The prior near a point, in LogCoordinates; its misfit is not wanted.

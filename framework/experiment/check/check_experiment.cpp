@@ -124,7 +124,9 @@ void checkBesideModel(const ExperimentSpec& experiment) {
   checkName(experiment.name);
   checkDuration(experiment);
   checkDerived(experiment);
-  checkCandidates(experiment);
+  if (experiment.trials.empty()) {  // of one at a time
+    checkCandidates(experiment);
+  }
   checkFeatures(experiment.features, experiment.model);
   checkNoise(experiment);
   checkTransform(experiment);

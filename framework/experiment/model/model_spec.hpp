@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "framework/experiment/model/excitation_spec.hpp"
@@ -11,6 +12,8 @@
 #include "framework/experiment/model/system_spec.hpp"
 
 namespace twinmap {
+
+struct TrialModel;
 
 /// Everything that determines a trajectory but the parameter point.
 struct ModelSpec {
@@ -28,6 +31,9 @@ struct ModelSpec {
   /// The input that is the time (s) of the excitation and of `t` at which a simulation begins; not in the
   /// file: inference in segments sets it. None: 0.
   std::optional<Name> time_origin{};
+  /// Of several trials simulated as one (combineTrials), what each is; nuisance, excitation and outputs are
+  /// then theirs together, by the names of nameInTrial(). Not in the file.
+  std::vector<TrialModel> trials;
 
   // compiled once (experiment_spec.cpp)
   ModelSpec();
@@ -36,6 +42,13 @@ struct ModelSpec {
   ModelSpec& operator=(const ModelSpec&);
   ModelSpec& operator=(ModelSpec&&) noexcept;
   ~ModelSpec();
+};
+
+/// The model of one of several trials. Its own names are without that of the trial.
+struct TrialModel {
+  std::string name;
+  ModelSpec model;
+  int modes = 0;  ///< that its features need
 };
 
 }  // namespace twinmap

@@ -19,6 +19,7 @@
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 #include "framework/data/reduction/reduced_simulator.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap {
@@ -89,6 +90,7 @@ std::unique_ptr<Simulator> MeasurementReader::makeReducedSimulator() const {
 }
 
 std::vector<std::string> MeasurementReader::listColumns() const {
+  requireOneTrial(experiment_, "a table is a recording of one: give each to infer as --trial NAME=FILE");
   std::vector<std::string> names = twinmap::listColumns(experiment_.measurement, getRecorded().output_names);
   const std::vector<std::string> excitation = listExcitationColumns(experiment_);
   names.insert(names.end(), excitation.begin(), excitation.end());
@@ -105,6 +107,7 @@ std::vector<std::string> MeasurementReader::listColumns() const {
 }
 
 double MeasurementReader::getStart(const Table& table, std::optional<double> start) const {
+  requireOneTrial(experiment_, "a table is a recording of one");
   return start ? *start : findStart(table, experiment_.measurement);
 }
 

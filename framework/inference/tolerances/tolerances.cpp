@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include "framework/base/log/log.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/feature_spec.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/tolerances/onset_speeds.hpp"
 
 namespace twinmap {
@@ -122,13 +123,11 @@ bool canFollow(const ExperimentSpec& experiment) {
          !(model.source && model.source->program) && model.simulation.integrator == Integrator::kDopri5;
 }
 
-}  // namespace
-
-ExperimentSpec followNoise(ExperimentSpec experiment) {
+void followOne(ExperimentSpec& experiment) {
   SimulationSpec& simulation = experiment.model.simulation;
   if (!canFollow(experiment)) {
     simulation.relative_tolerance.automatic = simulation.absolute_tolerance.automatic = false;
-    return experiment;
+    return;
   }
   const bool relative = simulation.relative_tolerance.automatic,
              absolute = simulation.absolute_tolerance.automatic;
@@ -149,40 +148,65 @@ ExperimentSpec followNoise(ExperimentSpec experiment) {
   if (const std::string warning = describeOnsetSpeeds(experiment, errors); !warning.empty()) {
     logWarning(warning);
   }
+}
+
+/// Of the experiment, or of each trial that it combines. Those of a model that cannot be simulated stay: the
+/// case itself fails, and says why, while others go on.
+std::vector<SimulationSpec> followOrKeep(const ExperimentSpec& experiment) {
+  std::vector<SimulationSpec> followed;
+  ExperimentSpec copy = experiment;
+  changeTrials(copy, [&](ExperimentSpec& one) {
+    try {
+      followOne(one);
+    } catch (const std::exception&) {
+    }
+    followed.push_back(one.model.simulation);
+  });
+  return followed;
+}
+
+void takeTolerances(const std::vector<SimulationSpec>& followed, ExperimentSpec& experiment) {
+  auto next = followed.begin();
+  changeTrials(experiment, [&](ExperimentSpec& one) {
+    one.model.simulation.relative_tolerance = next->relative_tolerance;
+    one.model.simulation.absolute_tolerance = next->absolute_tolerance;
+    ++next;
+  });
+}
+
+std::vector<double> listTolerances(const std::vector<SimulationSpec>& simulations) {
+  std::vector<double> tolerances;
+  for (const SimulationSpec& simulation : simulations) {
+    tolerances.push_back(simulation.relative_tolerance);
+    tolerances.push_back(simulation.absolute_tolerance);
+  }
+  return tolerances;
+}
+
+}  // namespace
+
+ExperimentSpec followNoise(ExperimentSpec experiment) {
+  changeTrials(experiment, followOne);
   return experiment;
 }
 
-/// Those of a model that cannot be simulated stay: the case itself fails, and says why, while others go on.
-static SimulationSpec followOrKeep(const ExperimentSpec& experiment) {
-  try {
-    return followNoise(experiment).model.simulation;
-  } catch (const std::exception&) {
-    return experiment.model.simulation;
-  }
-}
-
 void followNoise(std::vector<SweepCase>& cases) {
-  std::map<std::string, SimulationSpec> known;
-  std::map<std::tuple<int, double, double>, int> models;
+  std::map<std::string, std::vector<SimulationSpec>> known;
+  std::map<std::pair<int, std::vector<double>>, int> models;
   for (SweepCase& one : cases) {
     ExperimentSpec key;
     key.model = one.experiment.model;
     key.features = one.experiment.features;
     key.noise = one.experiment.noise;
     key.noise.replicates.reset();
-    const auto [entry, is_new] = known.emplace(writeExperiment(key), SimulationSpec{});
+    key.trials = one.experiment.trials;
+    const auto [entry, is_new] = known.emplace(writeExperiment(key), std::vector<SimulationSpec>{});
     if (is_new) {
       entry->second = followOrKeep(one.experiment);
     }
-    SimulationSpec& simulation = one.experiment.model.simulation;
-    simulation.relative_tolerance = entry->second.relative_tolerance;
-    simulation.absolute_tolerance = entry->second.absolute_tolerance;
+    takeTolerances(entry->second, one.experiment);
     const auto index = static_cast<int>(&one - cases.data());
-    one.model = models
-                    .emplace(std::tuple(one.model, double(simulation.relative_tolerance),
-                                        double(simulation.absolute_tolerance)),
-                             index)
-                    .first->second;
+    one.model = models.emplace(std::pair(one.model, listTolerances(entry->second)), index).first->second;
   }
 }
 

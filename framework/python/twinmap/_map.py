@@ -11,6 +11,7 @@ import pandas as pd
 
 from . import _twinmap
 from ._arguments import PathLike, Points, choose_threads, list_columns, list_known, make_points
+from ._recordings import Recording, list_trials
 from ._twinmap import Quantity
 
 Measurement = Union[PathLike, pd.DataFrame, Mapping[str, Any], np.ndarray]
@@ -237,6 +238,14 @@ class Map:
         draws = _DRAWS if posterior is True or (not posterior and posterior_from) else int(posterior)
         request = _twinmap.InferRequest(list_known(known), start, refine, draws, posterior_from or "")
         return infer(self._map, measurement, request)
+
+    def read_trials(self, recordings: Mapping[str, Recording]) -> np.ndarray:
+        """The features (d) of a map that was trained on several trials, for infer() and predict().
+
+        recordings: one of each trial, by its name: a file, DataFrame or mapping from columns to samples. Raises
+        MeasurementError where one cannot be used or lacks samples, ExperimentError for an unknown trial.
+        """
+        return _twinmap.read_trials(self._map, list_trials(recordings))
 
     def __repr__(self) -> str:
         names = ", ".join(parameter.name for parameter in self._parameters)

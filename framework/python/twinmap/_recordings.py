@@ -27,9 +27,10 @@ def list_recordings(recordings: Union[Recording, Sequence[Recording]]) -> List[T
     return [_read(recording, number) for number, recording in enumerate(recordings, start=1)]
 
 
-def _list_trials(
+def list_trials(
     recordings: Union[Sequence[Recording], Mapping[str, Union[Recording, Sequence[Recording]]]],
 ) -> List[Tuple[str, str, _Columns]]:
+    """Trial, name and columns of each recording; the trial is "" where none is named."""
     if not isinstance(recordings, Mapping):
         return [("", name, columns) for name, columns in list_recordings(recordings)]
     return [(trial, name, columns) for trial, of in recordings.items() for name, columns in list_recordings(of)]
@@ -107,7 +108,7 @@ def infer_together(
     the known inputs. Raises MeasurementError for a recording that cannot be used, ExperimentError for an unknown trial.
     """
     found = _twinmap.infer_together(
-        os.fspath(path), _list_trials(recordings), list(starts), windows, list_known(known), draws
+        os.fspath(path), list_trials(recordings), list(starts), windows, list_known(known), draws
     )
     return JointEstimate(*found)
 

@@ -61,10 +61,12 @@ void addExcitation(const RunFolder& run, Page& page, Section& section) {
   Figure figure{"excitation", "Excitation", "At the centre of the bounds.", "excitation", {}, {}, 0};
   for (std::size_t s = 0; s < signals.names.size(); ++s) {
     const auto values = signals.values.col(static_cast<Eigen::Index>(s));
-    table.add("signal_" + signals.names[s], std::vector<double>(values.begin(), values.end()));
+    std::string column = "signal_" + signals.names[s];
+    std::replace(column.begin(), column.end(), '.', '_');  // a picture would look for a part of a field
+    table.add(column, std::vector<double>(values.begin(), values.end()));
     figure.panels.push_back({"signal",
                              {{"table", "excitation"},
-                              {"column", "signal_" + signals.names[s]},
+                              {"column", column},
                               {"label", makeLabel(signals.names[s], signals.units[s])}}});
   }
   addFigure(std::move(figure), section);

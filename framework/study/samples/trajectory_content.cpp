@@ -140,7 +140,7 @@ YamlNode writeResponse(const ResponseLayout& layout) {
 std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout& layout) {
   // A new member must be written here, or left out on purpose: the binding then no longer compiles.
   const auto& [parameters, nuisance, inputs, priors, constants, system, source, excitation, initial, outputs,
-               simulation, time_origin] = model;
+               simulation, time_origin, trials] = model;
   static_cast<void>(priors);  // no response depends on what is known of its parameters
   const std::vector<ParameterSpec> sampled = collectSampled(model);  // all three; which is which is no matter
   FieldWriter content;
@@ -161,6 +161,9 @@ std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout&
   root.entries.push_back({"simulation", {}, writeSimulation(simulation)});
   if (time_origin) {
     root.entries.push_back({"time_origin", {}, writeValue(*time_origin)});
+  }
+  for (const TrialModel& trial : trials) {
+    root.entries.push_back({trial.name, {}, parseYaml(writeTrajectoryContent(trial.model, {}), trial.name)});
   }
   root.entries.push_back({"response", {}, writeResponse(layout)});
   return writeYaml(root);

@@ -1,9 +1,10 @@
-#include "framework/experiment/sweep/trials.hpp"
-
 #include <gtest/gtest.h>
 
+#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/sweep/sweep_cases.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/experiment/trials/trial_trees.hpp"
 
 namespace twinmap {
 namespace {
@@ -70,8 +71,16 @@ TEST(Trials, OneIsChosenOrSweptOver) {
 }
 
 TEST(Trials, ErrorsNameWhatIsWrong) {
-  EXPECT_NE(findError(parse(kTwoTrials)).find("choose one (trial=release) or run each (trial=release,kick)"),
+  EXPECT_NE(findError(parse(std::string(kTwoTrials) + "  a.b: {simulation: {duration: 3}}\n"))
+                .find("use letters, digits, '_' and '-' alone"),
             std::string::npos);
+  try {
+    requireOneTrial(readExperiment(parse(kTwoTrials)), "a simulation is of one");
+    ADD_FAILURE();
+  } catch (const ExperimentError& error) {
+    EXPECT_NE(std::string(error.what()).find("choose one by trial=release"), std::string::npos)
+        << error.what();
+  }
   EXPECT_NE(findError(parseExperimentTree(kTwoTrials, "t.yaml", {"trial=kik"})).find("did you mean 'kick'?"),
             std::string::npos);
   std::string other = kTwoTrials;
@@ -89,6 +98,57 @@ TEST(Trials, PriorsComeFromTheFile) {
   const ExperimentSpec experiment = readExperiment(parseExperimentTree(text, "t.yaml", {"trial=release"}));
   EXPECT_NEAR(experiment.model.parameters[0].bounds.lower, 10.0 - 3.8906 * 0.5, 1e-4);
   EXPECT_TRUE(experiment.model.parameters[0].prior->hasRange());
+}
+
+TEST(CombinedTrials, HaveTheFeaturesNoiseAndNuisanceOfEachByItsName) {
+  const ExperimentSpec both = readExperiment(parse(kTwoTrials));
+  ASSERT_EQ(both.trials.size(), 2u);
+  EXPECT_EQ(collectNames(both.model.outputs), (std::vector<std::string>{"release.x", "kick.x"}));
+  EXPECT_EQ(collectNames(both.model.nuisance), std::vector<std::string>{"kick.v"});
+  EXPECT_EQ(collectNames(both.model.parameters), std::vector<std::string>{"k"});
+  ASSERT_EQ(both.features.size(), 2u);
+  EXPECT_EQ(getOutputs(both.features[1]).front().text, "kick.x");
+  EXPECT_EQ(both.noise.stddev[0].stddev, 1e-3);
+  EXPECT_EQ(both.noise.stddev[1].stddev, 2e-3);
+}
+
+TEST(CombinedTrials, ReadBackAsTheyWereWritten) {
+  for (const std::vector<std::string>& overrides :
+       {std::vector<std::string>{}, {"inverse_map=gp"}, {"design.train.samples=50", "noise.scale=2"}}) {
+    const ExperimentSpec both = readExperiment(parseExperimentTree(kTwoTrials, "t.yaml", overrides));
+    const std::string text = writeExperiment(both);
+    EXPECT_EQ(writeExperiment(readExperiment(parseYaml(text, "again.yaml"))), text);
+    EXPECT_EQ(writeExperiment(readResolved(text)), text);
+    EXPECT_EQ(collectNames(readResolved(text).model.outputs), collectNames(both.model.outputs));
+  }
+}
+
+TEST(CombinedTrials, ScaleOfTheNoiseIsThatOfEach) {
+  const ExperimentSpec both = readExperiment(parseExperimentTree(kTwoTrials, "t.yaml", {"noise.scale=3"}));
+  EXPECT_DOUBLE_EQ(both.noise.stddev[0].stddev, 3e-3);
+  EXPECT_DOUBLE_EQ(both.noise.stddev[1].stddev, 2e-3);  // of a section of its own, which has no scale
+}
+
+TEST(CombinedTrials, ChangeOneByOne) {
+  ExperimentSpec both = readExperiment(parse(kTwoTrials));
+  changeTrials(both, [](ExperimentSpec& trial) { trial.model.simulation.max_steps = 7; });
+  EXPECT_EQ(both.model.trials[0].model.simulation.max_steps, 7);
+  EXPECT_EQ(both.model.trials[1].model.simulation.max_steps, 7);
+  EXPECT_EQ(both.features.size(), 2u);
+}
+
+TEST(CombinedTrials, RefuseWhatCannotBeOne) {
+  const std::string base(kTwoTrials);
+  const std::string modes =
+      "    features: [{modes: {count: 1}}]\n    noise: {modes: {frequency: 1, damping_ratio: 1}}\n";
+  EXPECT_NE(findError(parse(base + "  a:\n" + modes + "  b:\n" + modes)).find("only one of them may"),
+            std::string::npos);
+  EXPECT_NE(findError(parse(base + "  a: {transform: [z_score]}\n")).find("go through one"),
+            std::string::npos);
+  EXPECT_NE(findError(parse(base + "  a: {inputs: {m0: {bounds: [0, 1]}}, constants: {c: m0}}\n"
+                                   "  b: {inputs: {m0: {bounds: [0, 2]}}, constants: {c: m0}}\n"))
+                .find("other bounds in another trial"),
+            std::string::npos);
 }
 
 }  // namespace

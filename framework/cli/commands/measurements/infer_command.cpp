@@ -12,6 +12,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/infer_history.hpp"
+#include "framework/cli/commands/measurements/infer_options.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/diagnosis/missing_term.hpp"
@@ -30,26 +31,6 @@ enum class Format { kTable, kCsv, kJson };
 
 Format chooseFormat(const InferArguments& arguments) {
   return arguments.json || arguments.follow ? Format::kJson : arguments.csv ? Format::kCsv : Format::kTable;
-}
-
-SessionOptions makeOptions(const InferArguments& arguments) {
-  SessionOptions options{arguments.refine, arguments.posterior_draws, {}};
-  if (!arguments.posterior_from.empty()) {
-    options.posterior_from = arguments.posterior_from == toString(PosteriorSource::kSurrogate)
-                                 ? PosteriorSource::kSurrogate
-                                 : PosteriorSource::kSimulator;
-    options.posterior_draws = options.posterior_draws != 0 ? options.posterior_draws : kDefaultPosteriorDraws;
-  }
-  if (!arguments.profile.empty()) {
-    options.profiles = true;
-    options.posterior_draws =
-        options.posterior_draws != 0 ? options.posterior_draws : SimulatorPosteriorOptions{}.draws;
-    options.posterior_from = options.posterior_from.value_or(PosteriorSource::kSimulator);
-    if (options.posterior_from == PosteriorSource::kSurrogate) {
-      throw ExperimentError("--profile is of the simulator: leave --posterior-from out");
-    }
-  }
-  return options;
 }
 
 /// A file that rows are added to, if it is wanted.
@@ -84,7 +65,7 @@ class InferCommand {
  public:
   explicit InferCommand(const InferArguments& arguments)
       : source_(arguments.run),
-        session_(source_.makeSession(makeOptions(arguments))),
+        session_(source_.makeSession(makeSessionOptions(arguments))),
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
         run_(arguments.run),
         names_missing_(!arguments.follow && !arguments.csv),

@@ -2,14 +2,18 @@
 
 #include <iostream>
 
+#include "framework/base/log/log.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/experiment_of_run.hpp"
+#include "framework/cli/commands/measurements/infer_options.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/direct_inference.hpp"
+#include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/recording_list.hpp"
 #include "framework/inference/text/inference_text.hpp"
+#include "framework/inference/trial_reader.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -19,7 +23,8 @@ struct RecordedFile {
   std::string trial, file;
 };
 
-std::vector<RecordedFile> listFiles(const InferArguments& arguments, const JointInferrer& inferrer) {
+/// What --trial gives.
+std::vector<RecordedFile> listTrialFiles(const InferArguments& arguments) {
   std::vector<RecordedFile> files;
   for (const std::string& text : arguments.trials) {
     const std::size_t equals = text.find('=');
@@ -27,7 +32,14 @@ std::vector<RecordedFile> listFiles(const InferArguments& arguments, const Joint
       throw ExperimentError("--trial " + text + ": must be NAME=FILE, the name of a trial and its recording");
     }
     files.push_back({text.substr(0, equals), text.substr(equals + 1)});
-    inferrer.getReader(files.back().trial);
+  }
+  return files;
+}
+
+std::vector<RecordedFile> listFiles(const InferArguments& arguments, const JointInferrer& inferrer) {
+  std::vector<RecordedFile> files = listTrialFiles(arguments);
+  for (const RecordedFile& one : files) {
+    inferrer.getReader(one.trial);
   }
   for (const std::string& file : arguments.files) {
     if (inferrer.listTrials().size() > 1) {
@@ -66,27 +78,82 @@ void requireJointArguments(const InferArguments& arguments) {
   }
 }
 
+void print(const InferArguments& arguments, const InferredMeasurement& inferred,
+           const MeasurementReader& reader, const MeasurementInference& session) {
+  const std::vector<ParameterSpec>& parameters = reader.getExperiment().model.parameters;
+  const std::vector<FeatureInfo>& features = reader.getExtractor().getInfos();
+  if (arguments.json) {
+    std::cout << makeInferenceJson(inferred, parameters, features) << "\n";
+  } else if (arguments.csv) {
+    std::cout << makeInferenceCsvHeader(session.refines(), session.samplesPosteriors())
+              << makeInferenceCsvRows(inferred, parameters, session.samplesPosteriors());
+  } else {
+    std::cout << makeInferenceTable(inferred, parameters, features);
+  }
+}
+
+Eigen::VectorXd readKnown(const InferArguments& arguments, const MeasurementReader& reader) {
+  return collectKnown(reader.getExperiment().model.inputs, parseKnownValues(arguments.known));
+}
+
 /// The only recording of a trial: as its own experiment file would infer it.
 void inferTrial(const InferArguments& arguments, const MeasurementReader& reader, const Recording& recording,
                 int draws) {
-  const ModelSpec& model = reader.getExperiment().model;
-  const Eigen::VectorXd known = collectKnown(model.inputs, parseKnownValues(arguments.known));
-  const InferredMeasurement inferred =
-      DirectInference(reader, draws).infer(*recording.table, recording.start, known);
-  const std::vector<FeatureInfo>& features = reader.getExtractor().getInfos();
-  if (arguments.json) {
-    std::cout << makeInferenceJson(inferred, model.parameters, features) << "\n";
-  } else if (arguments.csv) {
-    std::cout << makeInferenceCsvHeader(false, false)
-              << makeInferenceCsvRows(inferred, model.parameters, false);
-  } else {
-    std::cout << makeInferenceTable(inferred, model.parameters, features);
+  DirectInference session(reader, draws);
+  print(arguments, session.infer(*recording.table, recording.start, readKnown(arguments, reader)), reader,
+        session);
+}
+
+bool isTrained(const std::filesystem::path& run) {
+  return std::filesystem::is_directory(run) ? std::filesystem::exists(run / "maps.h5")
+                                            : run.extension() == ".h5";
+}
+
+/// By the estimator that a run trained on all trials together. False where there is none, or it needs more
+/// than these recordings have.
+bool inferByRun(const InferArguments& arguments) {
+  if (arguments.trials.empty() || arguments.joint || arguments.windows || arguments.starts.size() > 1 ||
+      !isTrained(arguments.run)) {
+    return false;
   }
+  const InferenceSource source(arguments.run);
+  const TrialReader trials(source.getExperiment());
+  std::vector<RecordedTable> tables;
+  for (const RecordedFile& one : listTrialFiles(arguments)) {
+    tables.push_back(
+        {one.trial, one.file, readTable(one.file, trials.get(one.trial).listColumns(), MissingCells::kKeep)});
+  }
+  std::vector<Recording> recordings;
+  std::optional<double> start;
+  if (!arguments.starts.empty()) {
+    start = arguments.starts.front();
+  }
+  std::string names;
+  for (const RecordedTable& table : tables) {
+    recordings.push_back({table.trial, table.trial, &table.table, start});
+    names += (names.empty() ? "" : ", ") + table.trial + "=" + table.name;
+  }
+  const std::optional<Eigen::VectorXd> features = trials.read(recordings);
+  if (!features) {
+    logInfo("the estimator of the run needs one whole recording of each trial; inferring by simulation");
+    return false;
+  }
+  const std::unique_ptr<MeasurementInference> session = source.makeSession(makeSessionOptions(arguments));
+  WaitingLine waiting("inferring " + names);
+  InferredMeasurement inferred = session->infer(*features, readKnown(arguments, source.getReader()));
+  waiting.clear();
+  inferred.source = names;
+  inferred.run = arguments.run;
+  print(arguments, inferred, source.getReader(), *session);
+  return true;
 }
 
 }  // namespace
 
 void inferJointly(const InferArguments& arguments) {
+  if (inferByRun(arguments)) {
+    return;
+  }
   requireJointArguments(arguments);
   const int draws =
       arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;

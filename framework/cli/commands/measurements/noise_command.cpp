@@ -7,6 +7,7 @@
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -49,12 +50,18 @@ std::vector<std::string> listNeeded(const NoiseQuestion& question) {
   return names;
 }
 
+ExperimentSpec loadOneTrial(const std::string& file) {
+  ExperimentSpec experiment = loadExperiment(file);
+  requireOneTrial(experiment, "a recording is of one");
+  return experiment;
+}
+
 }  // namespace
 
 void noise(const NoiseArguments& arguments) {
   NoiseQuestion question = arguments.experiment.empty()
                                ? askForColumns(arguments.columns)
-                               : askForOutputs(loadExperiment(arguments.experiment), arguments.columns);
+                               : askForOutputs(loadOneTrial(arguments.experiment), arguments.columns);
   if (!arguments.window.empty()) {
     question.window = {arguments.window[0], arguments.window[1]};
   }

@@ -4,7 +4,7 @@
 #include "framework/cli/commands/measurements/experiment_of_run.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/sweep/trials.hpp"
+#include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/segments/segment_inference.hpp"
 #include "framework/inference/text/inference_text.hpp"

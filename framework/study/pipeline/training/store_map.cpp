@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/store/trained_file.hpp"
 
 namespace twinmap {
@@ -12,7 +13,7 @@ namespace {
 /// there.
 ExperimentSpec nameEngine(ExperimentSpec experiment, const Simulator& simulator) {
   if (!experiment.model.source && simulator.getEngine() != "lanes") {
-    experiment.model.simulation.engine = Engine::kSimbody;
+    changeTrials(experiment, [](ExperimentSpec& one) { one.model.simulation.engine = Engine::kSimbody; });
   }
   return experiment;
 }

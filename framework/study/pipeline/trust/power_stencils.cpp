@@ -28,6 +28,9 @@ ModelSpec makeConstantsUnknown(ModelSpec model, const std::vector<ParameterSpec>
   model.constants.erase(std::remove_if(model.constants.begin(), model.constants.end(), is_chosen),
                         model.constants.end());
   model.nuisance.insert(model.nuisance.end(), constants.begin(), constants.end());
+  for (TrialModel& trial : model.trials) {
+    trial.model = makeConstantsUnknown(std::move(trial.model), constants);
+  }
   return model;
 }
 

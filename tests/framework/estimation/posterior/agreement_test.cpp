@@ -110,6 +110,30 @@ TEST(Agreement, ATrialThatDeterminesNothingContradictsNothing) {
   EXPECT_LE(below, 14);  // 6 are expected
 }
 
+TEST(Agreement, FalseAlarmsHaveTheirRateWhereATrialSeesADifferenceAlone) {
+  // its Newton step goes along the sum to a corner of the bounds, which must not be cut coordinate by
+  // coordinate
+  LinearTrials trials = makeLinearTrials({400.0, 600.0});
+  trials.jacobians[1].col(1) = -trials.jacobians[1].col(0);
+  trials.parts[1].information = trials.jacobians[1].transpose() * trials.jacobians[1];
+  constexpr int kTests = 200;
+  int below = 0, far_below = 0;
+  for (std::uint64_t seed = 1; seed <= kTests; ++seed) {
+    const RandomStream random(seed, RandomPurpose::kVerification);
+    for (std::size_t k = 0; k < 2; ++k) {
+      VectorXd errors(trials.jacobians[k].rows());
+      random.drawNormals(k, 0, errors.data(), static_cast<std::size_t>(errors.size()));
+      trials.parts[k].descent = trials.jacobians[k].transpose() * errors;
+    }
+    const double p =
+        testAgreement(20.0, {12.0, 8.0}, trials.parts, trials.problem, VectorXd::Zero(4), seed).p_value;
+    below += p < 0.2 ? 1 : 0;
+    far_below += p < kAgreementLevel ? 1 : 0;
+  }
+  EXPECT_NEAR(below / static_cast<double>(kTests), 0.2, 3.0 * std::sqrt(0.16 / kTests));
+  EXPECT_LE(far_below, 7);  // 2 are expected
+}
+
 TEST(Agreement, WhatATrialFitsFarFromTheJointEstimateContradictsLittle) {
   // alone the second trial fits along a bent valley what its linear model does not say
   LinearTrials trials = makeLinearTrials({40.0, 1e-3});

@@ -19,9 +19,15 @@ struct Trial {
 /// for another section, such as the machine's own, and for trials without one.
 std::vector<Trial> expandTrials(const YamlNode& root);
 
+/// Whether the tree describes several trials.
+bool hasTrials(const YamlNode& root);
+
+/// The tree of expandTrials(): what trials have of their own is taken from `trials` and left out of `shared`.
+YamlNode joinTrials(YamlNode shared, const std::vector<Trial>& trials);
+
 /// The tree of the one trial that `trial: NAME` chooses (also by an override trial=NAME, and the first of a
-/// sweep over `trial`); the tree itself where it has none. Throws ExperimentError where none, or an unknown
-/// one, is chosen.
+/// sweep over `trial`); the tree itself where it has none, or none is chosen. Throws ExperimentError for an
+/// unknown one.
 YamlNode selectTrial(const YamlNode& root);
 
 }  // namespace twinmap

@@ -1,9 +1,8 @@
-#include "framework/experiment/sweep/trials.hpp"
-
-#include <fmt/format.h>
+#include "framework/experiment/trials/trial_trees.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "framework/base/text/nearest_name.hpp"
 
@@ -12,11 +11,13 @@ namespace {
 
 constexpr const char* kTrials = "trials";
 constexpr const char* kTrial = "trial";
+constexpr const char* kTransform = "transform";
+constexpr const char* kDescription = "description";
 
 /// What may differ between experiments with one machine.
-constexpr std::array kOwnSections = {"excitation", "initial",     "outputs",   "features",
-                                     "noise",      "nuisance",    "inputs",    "constants",
-                                     "simulation", "measurement", "transform", "description"};
+constexpr std::array kOwnSections = {"excitation", "initial",     "outputs",  "features",
+                                     "noise",      "nuisance",    "inputs",   "constants",
+                                     "simulation", "measurement", kTransform, kDescription};
 
 void eraseEntry(YamlNode& map, const std::string& key) {
   map.entries.erase(std::remove_if(map.entries.begin(), map.entries.end(),
@@ -24,9 +25,13 @@ void eraseEntry(YamlNode& map, const std::string& key) {
                     map.entries.end());
 }
 
+bool isOwnSection(const std::string& key) {
+  return std::find(kOwnSections.begin(), kOwnSections.end(), key) != kOwnSections.end();
+}
+
 void requireOwnSection(const YamlEntry& section) {
-  const std::vector<std::string> names(kOwnSections.begin(), kOwnSections.end());
-  if (std::find(names.begin(), names.end(), section.key) == names.end()) {
+  if (!isOwnSection(section.key)) {
+    const std::vector<std::string> names(kOwnSections.begin(), kOwnSections.end());
     throw ExperimentError(section.key_where, section.key,
                           "is not a section that a trial may have of its own (" + listNames(names) +
                               "); the machine and its parameters are shared by all trials" +
@@ -34,7 +39,17 @@ void requireOwnSection(const YamlEntry& section) {
   }
 }
 
+/// Names of outputs, columns and folders begin with it.
+void requirePlainName(const YamlEntry& trial) {
+  const auto is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (trial.key.empty() || !std::all_of(trial.key.begin(), trial.key.end(), is_plain)) {
+    throw ExperimentError(trial.key_where, trial.key,
+                          "names a trial: use letters, digits, '_' and '-' alone");
+  }
+}
+
 Trial makeTrial(const YamlNode& base, const YamlEntry& entry) {
+  requirePlainName(entry);
   if (entry.value.kind != YamlNode::Kind::kMap) {
     throw ExperimentError(entry.key_where, entry.key,
                           "must be a map of the sections that are this trial's own");
@@ -80,21 +95,34 @@ std::vector<Trial> expandTrials(const YamlNode& root) {
   return expanded;
 }
 
+bool hasTrials(const YamlNode& root) {
+  return root.find(kTrials) != nullptr;
+}
+
+YamlNode joinTrials(YamlNode shared, const std::vector<Trial>& trials) {
+  YamlNode own = makeMap();
+  for (const Trial& trial : trials) {
+    own.entries.push_back({trial.name, {}, makeMap()});
+    for (const YamlEntry& section : trial.tree.entries) {
+      if (isOwnSection(section.key) && section.key != kTransform && section.key != kDescription) {
+        own.entries.back().value.entries.push_back(section);
+        eraseEntry(shared, section.key);
+      }
+    }
+  }
+  shared.entries.push_back({kTrials, {}, std::move(own)});
+  return shared;
+}
+
 YamlNode selectTrial(const YamlNode& root) {
-  if (root.find(kTrials) == nullptr) {
+  const YamlNode* chosen = findChoice(root);
+  if (!hasTrials(root) || chosen == nullptr) {
     return root;
   }
   std::vector<Trial> trials = expandTrials(root);
   std::vector<std::string> names;
   for (const Trial& trial : trials) {
     names.push_back(trial.name);
-  }
-  const YamlNode* chosen = findChoice(root);
-  if (chosen == nullptr) {
-    throw ExperimentError(root.find(kTrials)->where, "",
-                          fmt::format("describes {0} trials; choose one (trial={1}) or run each (trial={2}); "
-                                      "infer takes --trial {1}=RECORDING",
-                                      names.size(), names.front(), fmt::join(names, ",")));
   }
   const auto found = std::find(names.begin(), names.end(), chosen->scalar);
   if (found == names.end()) {

@@ -1,0 +1,45 @@
+#include "framework/inference/trial_reader.hpp"
+
+#include <algorithm>
+
+#include "framework/experiment/trials/combine_trials.hpp"
+
+namespace twinmap {
+
+TrialReader::TrialReader(const ExperimentSpec& combined) {
+  for (const TrialExperiment& trial : combined.trials) {
+    trials_.push_back({trial.name, MeasurementReader(trial.experiment)});
+  }
+}
+
+const MeasurementReader& TrialReader::get(const std::string& trial) const {
+  const auto found =
+      std::find_if(trials_.begin(), trials_.end(), [&](const Trial& one) { return one.name == trial; });
+  if (found == trials_.end()) {
+    std::vector<std::string> names;
+    for (const Trial& one : trials_) {
+      names.push_back(one.name);
+    }
+    throwUnknownTrial(trial, names);
+  }
+  return found->reader;
+}
+
+std::optional<Eigen::VectorXd> TrialReader::read(const std::vector<Recording>& recordings) const {
+  std::vector<double> features;
+  for (const Trial& trial : trials_) {
+    const auto is_of_trial = [&](const Recording& one) { return one.trial == trial.name; };
+    if (std::count_if(recordings.begin(), recordings.end(), is_of_trial) != 1) {
+      return {};
+    }
+    const Recording& recording = *std::find_if(recordings.begin(), recordings.end(), is_of_trial);
+    const AvailableFeatures found = trial.reader.readAvailableFeatures(*recording.table, recording.start);
+    if (!found.isComplete() || trial.reader.followTimes(*recording.table, recording.start)) {
+      return {};
+    }
+    features.insert(features.end(), found.features.begin(), found.features.end());
+  }
+  return Eigen::Map<Eigen::VectorXd>(features.data(), static_cast<Eigen::Index>(features.size()));
+}
+
+}  // namespace twinmap

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/inference/joint_inference.hpp"
+
+namespace twinmap {
+
+/// From recordings of trials to the features of an experiment that combines them (combineTrials). Immutable.
+class TrialReader {
+ public:
+  explicit TrialReader(const ExperimentSpec& combined);
+
+  /// Of one trial. Throws ExperimentError for an unknown one.
+  const MeasurementReader& get(const std::string& trial) const;
+
+  /// The features (d) of all trials; none where a trial has no recording or several, or a recording lacks
+  /// samples or states its noise. Throws MeasurementError where a recording cannot be used.
+  std::optional<Eigen::VectorXd> read(const std::vector<Recording>& recordings) const;
+
+ private:
+  struct Trial {
+    std::string name;
+    MeasurementReader reader;
+  };
+
+  std::vector<Trial> trials_;
+};
+
+}  // namespace twinmap
