@@ -39,6 +39,39 @@ void resolveCurves(ModelSpec& model) {
   }
 }
 
+/// The tensor of a body whose mass is spread so: I = tr(C) 1 - C with C = m S S'.
+void resolveInertia(BodySpec& body) {
+  if (!body.inertia.spread) {
+    return;
+  }
+  const Expression3 zero;
+  const Expression3 &spread = *body.inertia.spread, &skew = body.inertia.skew.value_or(zero);
+  const auto multiply = [](const Expression& a, const Expression& b) {
+    const bool is_zero = a.text == Expression{}.text || b.text == Expression{}.text;
+    return is_zero ? std::string() : fmt::format("({})*({})", a.text, b.text);
+  };
+  const auto sum = [&](const std::vector<std::string>& terms, const char* sign) {
+    std::string text;
+    for (const std::string& term : terms) {
+      text += term.empty() ? "" : (text.empty() ? "" : " + ") + term;
+    }
+    return Expression{text.empty() ? "0" : fmt::format("{}({})*({})", sign, body.mass.text, text),
+                      spread[0].where};
+  };
+  const std::vector<std::string> xx{multiply(spread[0], spread[0]), multiply(skew[0], skew[0]),
+                                    multiply(skew[1], skew[1])},
+      yy{multiply(spread[1], spread[1]), multiply(skew[2], skew[2])}, zz{multiply(spread[2], spread[2])};
+  const auto join = [](std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  InertiaSpec tensor;
+  tensor.moments = {sum(join(yy, zz), ""), sum(join(xx, zz), ""), sum(join(xx, yy), "")};
+  tensor.products = {sum({multiply(skew[0], spread[1]), multiply(skew[1], skew[2])}, "-"),
+                     sum({multiply(skew[1], spread[2])}, "-"), sum({multiply(skew[2], spread[2])}, "-")};
+  body.inertia = tensor;
+}
+
 void resolveReport(const std::vector<ParameterSpec>& parameters, ReportSpec& report) {
   if (report.over.empty() && parameters.size() >= 2) {
     report.over = {parameters[parameters.size() - 2].name, parameters.back().name};
@@ -135,6 +168,9 @@ void resolveDefaults(ExperimentSpec& experiment) {
   }
   resolveReport(experiment.model.parameters, experiment.report);  // the file's own, if there are two
   resolveCurves(experiment.model);
+  for (BodySpec& body : experiment.model.system.bodies) {
+    resolveInertia(body);
+  }
   resolveReport(experiment.model.parameters, experiment.report);
   resolveTransform(experiment);
   resolveNoiseCorrelation(experiment);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/estimation/posterior/linear_posterior.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
@@ -22,6 +23,9 @@ namespace {
 
 /// The joint search begins where the recordings alone ended; so few starts of its own suffice.
 constexpr int kOwnStarts = 8;
+/// Of a recording alone, where there are many parameters and each simulation is dear: their means and
+/// standard deviations are then known to a tenth of one, which is enough to show what each recording adds.
+constexpr int kDrawsAlone = 128;
 /// With more unknown parameters than these, those of single recordings are integrated out: importance
 /// sampling is good for some ten dimensions.
 constexpr Index kMaxDrawn = 8;
@@ -184,6 +188,9 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
     requireSameParameters(getParameters(), members_.back().reader->getExperiment().model.parameters);
   }
   options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
+  if (static_cast<Index>(getParameters().size()) > kManyUnknown) {
+    options_.draws = std::min(draws, kDrawsAlone);
+  }
   joint_options_.search.scouts = kOwnStarts;
   joint_options_.search.starts = 2 * kOwnStarts;
   joint_options_.search.max_batches = 1;

@@ -27,6 +27,9 @@ std::string makeResponsesCsv(const std::vector<ExampleResponse>& examples, const
                       escapeCsv(layout.output_units[o]));
       for (Eigen::Index time = 0; time < layout.times.size(); ++time) {
         const Eigen::Index row = layout.getRow(output, time);
+        if (std::isnan(example.measured[row])) {
+          continue;
+        }
         csv += start + makeCell(layout.times[time]) + makeCell(example.measured[row]) +
                makeCell(example.nominal[row]) + makeCell(example.updated[row]) + makeCell(row_stddev[row]) +
                "\n";

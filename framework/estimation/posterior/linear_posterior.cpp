@@ -33,19 +33,22 @@ importance::SliceNumbers makeNumbers(const RandomStream& random) {
 /// The posterior with a likelihood that is normal about a basin's minimum, as the normal distribution of its
 /// covariance times what the prior within the bounds is of its own normal approximation:
 ///   log f(at + s) = log prior(at + s) - s' d_prior + s' (H_prior + box) s / 2.
-importance::TiltedNormal makeLinear(const MisfitSurface& surface, const Basin& basin) {
+///   - curvature: what the bend adds to half the misfit; null: of a linear response.
+importance::TiltedNormal makeLinear(const MisfitSurface& surface, const Basin& basin,
+                                    const ResponseCurvature* curvature) {
   const VectorXd& at = basin.local.at;
   const PriorMisfit prior = surface.linearizePrior(at);
   MatrixXd information = prior.information;
   information.diagonal().array() += kHalfWidthInformation;
   return {at + basin.covariance * basin.local.descent, linalg::calcCholesky(basin.covariance).lower,
-          [&surface, at, prior, information](const VectorXd& point) {
+          [&surface, at, prior, information, curvature](const VectorXd& point) {
             if (!(point.cwiseAbs().maxCoeff() <= 1.0)) {
               return -std::numeric_limits<double>::infinity();
             }
             const VectorXd apart = point - at;
             return surface.calcLogPrior(point) - apart.dot(prior.descent) +
-                   0.5 * apart.dot(information * apart);
+                   0.5 * apart.dot(information * apart) -
+                   (curvature != nullptr ? curvature->calcBend(point) : 0.0);
           }};
 }
 
@@ -62,19 +65,22 @@ VectorXd calcLinearLosses(const MisfitSurface& surface, const Basin& basin, cons
 /// One chain of draws of the linear posterior, and what each weighs (log).
 class LinearChain {
  public:
-  LinearChain(MisfitSurface& surface, const Basin& basin, std::uint64_t seed)
+  LinearChain(MisfitSurface& surface, const Basin& basin, std::uint64_t seed,
+              const ResponseCurvature* curvature = nullptr)
       : surface_(surface),
         basin_(basin),
+        curvature_(curvature),
         numbers_(makeNumbers(RandomStream(seed, RandomPurpose::kPosterior))),
         at_(basin.local.at) {}
 
   void draw(int count) {
     constexpr int kSteps = 50;  // a draw: those of a uniform prior in a corner hardly depend on each other
-    const MatrixXd points =
-        importance::sampleEllipticalSlices(makeLinear(surface_, basin_), at_, count, kSteps, numbers_);
+    const MatrixXd points = importance::sampleEllipticalSlices(makeLinear(surface_, basin_, curvature_), at_,
+                                                               count, kSteps, numbers_);
     VectorXd log_weights = surface_.calcLogPosteriors(points) + calcLinearLosses(surface_, basin_, points);
     for (Index i = 0; i < count; ++i) {
       log_weights[i] -= surface_.calcLogPrior(points.col(i));
+      log_weights[i] += curvature_ != nullptr ? curvature_->calcBend(points.col(i)) : 0.0;
     }
     at_ = points.rightCols(1);
     const Index before = points_.cols();
@@ -90,6 +96,7 @@ class LinearChain {
  private:
   MisfitSurface& surface_;
   const Basin& basin_;
+  const ResponseCurvature* curvature_;
   const importance::SliceNumbers numbers_;
   VectorXd at_, log_weights_;
   MatrixXd points_;
@@ -98,8 +105,8 @@ class LinearChain {
 }  // namespace
 
 AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws, int most_rounds,
-                               std::uint64_t seed) {
-  LinearChain chain(surface, basin, seed);
+                               std::uint64_t seed, const ResponseCurvature* curvature) {
+  LinearChain chain(surface, basin, seed, curvature);
   AdaptiveDraws drawn;
   bool goes_on = true;
   while (goes_on) {
@@ -134,7 +141,7 @@ bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins)
 }
 
 BasinSearchOptions limitSearch(BasinSearchOptions options, Index drawn) {
-  constexpr int kScouts = 3, kStarts = 8;
+  constexpr int kScouts = 2, kStarts = 4;
   if (drawn > kManyUnknown) {
     options.scouts = std::min(options.scouts, kScouts);
     options.probes = std::min(options.probes, kScouts);

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/response_curvature.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {
@@ -21,8 +22,11 @@ constexpr Eigen::Index kManyUnknown = 16;
 /// Rounds of `draws` follow, as many as `most_rounds`, while the effective sample size is below
 /// kSmallestSampleSize and as many rounds may reach it. Cost: one simulation a draw, whatever the number of
 /// parameters.
+/// `curvature`, where it is given, bends that response, so that what is left for the weights is its third
+/// derivatives.
 importance::AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws,
-                                           int most_rounds, std::uint64_t seed);
+                                           int most_rounds, std::uint64_t seed,
+                                           const ResponseCurvature* curvature = nullptr);
 
 /// How far from linear the response is where that posterior has its mass: the variance of the logarithms of
 /// some draws' weights, infinite where one of them cannot be simulated. What is straight in the parameters is

@@ -46,11 +46,16 @@ void describe(Fields& f, JointSpec& s) {
   f.optional("in_body", s.in_body, "joint frame, fixed to the body");
 }
 
-/// Either about the joint's axis alone or the whole tensor.
+/// About the joint's axis alone, the whole tensor, or how the mass is spread. The last is of an existing body
+/// whatever its six numbers: with the upper triangle S of the spreads (lx, ly, lz on the diagonal) and skews
+/// (xy, xz, yz), the second moment of the mass about its centre is m S S', which with the mass is the
+/// log-Cholesky form of the pseudo-inertia (Rucker and Wensing 2022).
 struct InertiaSpec {
-  Expression about_axis{"", {}};  ///< about an axis through the centre of mass, kg m2; "": the tensor counts
-  Expression3 moments;            ///< Ixx, Iyy, Izz about the body's own centre of mass, kg m2
-  Expression3 products;           ///< Ixy, Ixz, Iyz (entries of the tensor), kg m2
+  Expression about_axis{"", {}};        ///< about an axis through the centre of mass, kg m2; "": not given
+  Expression3 moments;                  ///< Ixx, Iyy, Izz about the body's own centre of mass, kg m2
+  Expression3 products;                 ///< Ixy, Ixz, Iyz (entries of the tensor), kg m2
+  std::optional<Expression3> spread{};  ///< m; replaced by moments and products (resolveDefaults)
+  std::optional<Expression3> skew{};    ///< m, beside spread
 };
 
 inline bool isTensorGiven(const InertiaSpec& inertia) {
@@ -76,8 +81,14 @@ void describe(Fields& f, InertiaSpec& s) {
              Unit{"kg m2"});
   f.optional("moments", s.moments, "Ixx, Iyy, Izz about the body's own centre of mass", Unit{"kg m2"});
   f.optional("products", s.products, "tensor entries Ixy, Ixz, Iyz", Unit{"kg m2"});
-  f.rule(s.about_axis.text.empty() || !isTensorGiven(s),
-         "must give either one moment about the joint's axis or 'moments' and 'products'");
+  f.optional("spread", s.spread,
+             "root mean square distances of the mass along x, y, z from its centre, less what the skews add: "
+             "of an existing body, whatever the values",
+             Unit{"m"});
+  f.optional("skew", s.skew, "xy, xz, yz: how the spreads lean, beside 'spread'; default 0", Unit{"m"});
+  f.rule((s.about_axis.text.empty() ? 0 : 1) + (isTensorGiven(s) ? 1 : 0) + (s.spread ? 1 : 0) <= 1,
+         "must give one of a moment about the joint's axis, 'moments' with 'products', and 'spread'");
+  f.rule(s.spread || !s.skew, "must give 'spread' beside 'skew'");
 }
 
 struct BodySpec {

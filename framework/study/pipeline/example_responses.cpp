@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "framework/data/noise/noise.hpp"
@@ -36,6 +37,18 @@ Eigen::MatrixXd makeExamplePoints(const ExperimentSpec& experiment, const Trajec
   return points;
 }
 
+/// Trials end at different times: there is no measurement after the end of a shorter one.
+void endTrials(const ModelSpec& model, const ResponseLayout& layout, Eigen::VectorXd& measured) {
+  Eigen::Index output = 0;
+  for (const TrialModel& trial : model.trials) {
+    for (std::size_t o = 0; o < trial.model.outputs.size(); ++o, ++output) {
+      auto rows = measured.segment(layout.getRow(output, 0), layout.times.size()).array();
+      rows = (layout.times.array() > trial.model.simulation.duration)
+                 .select(std::numeric_limits<double>::quiet_NaN(), rows);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<ExampleResponse> simulateExamples(const ExperimentSpec& experiment, const Simulator& simulator,
@@ -57,6 +70,7 @@ std::vector<ExampleResponse> simulateExamples(const ExperimentSpec& experiment, 
     examples.push_back({names[i], sample, measured.col(sample),
                         models.responses.col(static_cast<Eigen::Index>(2 * i)),
                         models.responses.col(static_cast<Eigen::Index>(2 * i + 1))});
+    endTrials(experiment.model, test.layout, examples.back().measured);
   }
   return examples;
 }

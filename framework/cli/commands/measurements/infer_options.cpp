@@ -1,6 +1,5 @@
 #include "framework/cli/commands/measurements/infer_options.hpp"
 
-#include "framework/estimation/trained/posterior_model.hpp"
 
 namespace twinmap::cli {
 
