@@ -166,6 +166,7 @@ def infer_together(
     known: Sequence[Tuple[str, float]],
     draws: int,
 ) -> Tuple[str, str, np.ndarray, np.ndarray]: ...
+def read_trials(map: Map, recordings: Sequence[Tuple[str, str, _Columns]]) -> np.ndarray: ...
 def diagnose(
     map: Map,
     recordings: Sequence[Tuple[str, _Columns]],

@@ -79,6 +79,24 @@ class Recordings(FolderTestCase):
         with self.assertRaisesRegex(twinmap.ExperimentError, "one recording alone"):
             twinmap.infer_together(self.path, [same])
 
+    def test_a_run_of_all_trials_infers_from_a_recording_of_each(self):
+        experiment = twinmap.Experiment.from_file(self.path)
+        small = experiment.override(design__train__samples=60, design__test__samples=40)
+        trained = small.run(self.folder / "run").map
+        self.assertEqual([output.name for output in trained.outputs], ["free.x", "step.x"])
+        features = trained.read_trials({"step": self.measure("step"), "free": self.measure("free")})
+        self.assertEqual(features.shape, (200,))
+        estimate = trained.infer(features)
+        self.assertEqual(estimate.status, "ok", estimate)
+        mean, stddev = estimate["k"]
+        self.assertLess(abs(mean - 95), 4 * stddev)
+        simulated = experiment.simulate({"k": 95.0, "d": 1.2}, noise=True)
+        self.assertEqual(trained.infer(experiment.extract(simulated)[0]).status, "ok")
+        with self.assertRaisesRegex(twinmap.MeasurementError, "one whole recording of each"):
+            trained.read_trials({"free": self.measure("free")})
+        with self.assertRaisesRegex(twinmap.ExperimentError, "describes the trials free, step"):
+            trained.infer(self.measure("free"))
+
     def test_an_unknown_trial_is_named(self):
         with self.assertRaisesRegex(twinmap.ExperimentError, "swing"):
             twinmap.infer_together(self.path, {"swing": self.measure("free")})
