@@ -188,10 +188,9 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
     requireSameParameters(getParameters(), members_.back().reader->getExperiment().model.parameters);
   }
   options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
-  if (static_cast<Index>(getParameters().size()) > kManyUnknown) {
-    options_.draws = std::min(draws, kDrawsAlone);
-  }
-  joint_options_.search.scouts = kOwnStarts;
+  const bool has_many = static_cast<Index>(getParameters().size()) > kManyUnknown;
+  options_.draws = has_many ? std::min(draws, kDrawsAlone) : draws;
+  joint_options_.search.scouts = has_many ? 1 : kOwnStarts;
   joint_options_.search.starts = 2 * kOwnStarts;
   joint_options_.search.max_batches = 1;
 }

@@ -141,12 +141,13 @@ bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins)
 }
 
 BasinSearchOptions limitSearch(BasinSearchOptions options, Index drawn) {
-  constexpr int kScouts = 2, kStarts = 4;
+  constexpr int kScouts = 3, kStarts = 8, kConfirmations = 2;
   if (drawn > kManyUnknown) {
     options.scouts = std::min(options.scouts, kScouts);
     options.probes = std::min(options.probes, kScouts);
     options.starts = std::min(options.starts, kStarts);
     options.max_batches = std::min(options.max_batches, 1);
+    options.confirmations = std::min(options.confirmations, kConfirmations);
   }
   return options;
 }
