@@ -16,6 +16,9 @@ namespace {
 
 constexpr double kStep = 0.5;        // standard deviations: what bends within the posterior, not at a point
 constexpr double kLeastRoom = 0.05;  // of a standard deviation: a prior's bound, where it hardly goes
+/// Of the longest axis: two shorter ones bend by a hundredth of what it does, and what one bends with a
+/// longer one is seen along that.
+constexpr double kShortest = 0.1;
 
 /// How far (in standard deviations, signed) a point may go along each axis within the bounds; 0: not.
 VectorXd chooseSteps(const VectorXd& at, const MatrixXd& axes) {
@@ -28,7 +31,11 @@ VectorXd chooseSteps(const VectorXd& at, const MatrixXd& axes) {
     }
     return room;
   };
+  const double least = kShortest * axes.colwise().norm().maxCoeff();
   return VectorXd::NullaryExpr(at.size(), [&](Index k) {
+    if (axes.col(k).norm() < least) {
+      return 0.0;
+    }
     const double up = findRoom(axes.col(k)), down = findRoom(-axes.col(k));
     const double step = up >= down ? up : -down;
     return std::abs(step) < kLeastRoom ? 0.0 : step;
@@ -137,19 +144,23 @@ std::optional<ResponseCurvature> ResponseCurvature::measure(MisfitSurface& surfa
   curvature.to_axes_ = axes.cwiseAbs2().colwise().sum().cwiseInverse().asDiagonal() * axes.transpose();
   const VectorXd steps = chooseSteps(basin.local.at, axes);
   const Index u = steps.size();
-  MatrixXd points = basin.local.at.replicate(1, u + 1);
-  points.rightCols(u) += axes * steps.asDiagonal();
+  std::vector<Index> moved;
+  for (Index k = 0; k < u; ++k) {
+    if (steps[k] != 0.0) {
+      moved.push_back(k);
+    }
+  }
+  MatrixXd points = basin.local.at.replicate(1, 1 + static_cast<Index>(moved.size()));
+  points.rightCols(static_cast<Index>(moved.size())) += axes(Eigen::all, moved) * steps(moved).asDiagonal();
   const std::vector<LinearResponse> responses = linearizeResponses(surface, points, axes);
   if (responses.empty()) {
     return {};
   }
   const LinearResponse& center = responses.front();
-  std::vector<MatrixXd> along;
-  for (Index k = 0; k < u; ++k) {
-    along.push_back(
-        steps[k] == 0.0
-            ? MatrixXd::Zero(center.jacobian.rows(), u)
-            : MatrixXd((responses[static_cast<std::size_t>(k + 1)].jacobian - center.jacobian) / steps[k]));
+  std::vector<MatrixXd> along(static_cast<std::size_t>(u), MatrixXd::Zero(center.jacobian.rows(), u));
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    along[static_cast<std::size_t>(moved[i])] =
+        (responses[i + 1].jacobian - center.jacobian) / steps[moved[i]];
   }
   curvature.reduce(center.residual, center.jacobian, pairBends(along, steps, center.residual.size()));
   return curvature;

@@ -13,8 +13,9 @@ namespace twinmap {
 class ResponseCurvature {
  public:
   /// H along each axis from the first derivatives half a standard deviation away, to the side with more room
-  /// within the bounds; 0 along one that has hardly any. None where a part's loss is not a sum of squares, or
-  /// one of these points cannot be simulated. Cost: u simulations with derivatives.
+  /// within the bounds; 0 along one that has hardly any, and for two of less than a tenth of the longest.
+  /// None where a part's loss is not a sum of squares, or one of these points cannot be simulated. Cost: a
+  /// simulation with derivatives for each of the longer axes.
   static std::optional<ResponseCurvature> measure(MisfitSurface& surface, const Basin& basin);
 
   /// Half of what the bend adds to the squared residual at a point (u). Cost: some u^2 times the number of
