@@ -47,10 +47,12 @@ int chooseThreadCount(int threads, int tasks) {
 
 }  // namespace
 
-void runOnTeam(const Simulator& prototype, int count, int threads,
+int countThreads() {
+  return omp_in_parallel() ? 1 : omp_get_max_threads();
+}
+
+void runOnTeam(const std::vector<std::unique_ptr<Simulator>>& team, int count, int size,
                const std::function<void(Simulator& simulator, int index)>& task) {
-  const int size = chooseThreadCount(threads, count);
-  const auto simulators = cloneSerially(prototype, size);
   FirstException failure;
 #pragma omp parallel for num_threads(size) schedule(dynamic)
   for (int i = 0; i < count; ++i) {
@@ -58,12 +60,18 @@ void runOnTeam(const Simulator& prototype, int count, int threads,
       continue;
     }
     try {
-      task(*simulators[omp_get_thread_num()], i);
+      task(*team[static_cast<std::size_t>(omp_get_thread_num())], i);
     } catch (...) {
       failure.keepCurrent();
     }
   }
   failure.rethrow();
+}
+
+void runOnTeam(const Simulator& prototype, int count, int threads,
+               const std::function<void(Simulator& simulator, int index)>& task) {
+  const int size = chooseThreadCount(threads, count);
+  runOnTeam(cloneSerially(prototype, size), count, size, task);
 }
 
 }  // namespace twinmap
