@@ -197,6 +197,40 @@ Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found,
   return sampling;
 }
 
+/// What the basins on a ridge show to be identified (findRidges).
+std::vector<Ridge> findRidgesOf(const std::vector<Basin>& basins, const LogCoordinates& coordinates,
+                                const std::vector<ParameterSpec>& unknown) {
+  std::vector<MatrixXd> information;
+  MatrixXd points(coordinates.getCount(), static_cast<Index>(basins.size()));
+  for (std::size_t k = 0; k < basins.size(); ++k) {
+    const LocalSurface& local = basins[k].local;
+    const VectorXd per_width = 2.0 * coordinates.calcSlopes(local.at).cwiseInverse();
+    information.emplace_back(per_width.asDiagonal() * local.information * per_width.asDiagonal());
+    points.col(static_cast<Index>(k)) = coordinates.toParameters(local.at);
+  }
+  return findRidges(information, points, unknown);
+}
+
+/// With the sums that alone are determined in the place of parameters, if there are some; else not reliable.
+Sampling sampleSums(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
+                    const PosteriorDrawOptions& options) {
+  const std::vector<Ridge> ridges = findRidgesOf(found.basins, whole.getCoordinates(), problem.unknown);
+  const SumCoordinates sums(problem.unknown, ridges);
+  Sampling sampling;
+  sampling.obstacle = "no sums are known";
+  if (sums.isEmpty()) {
+    return sampling;
+  }
+  sampling.plain = SumCoordinates::listReplaced(problem.unknown, ridges);
+  ProblemSurface plain(problem, sampling.plain);
+  MisfitSurface& surface = plain.upd();
+  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.drawn = drawInSums(surface, sampling.landscape.basins, sums, options);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  sampling.simulations = surface.getSimulations();
+  return sampling;
+}
+
 /// In the parameters as they are.
 Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
                      const PosteriorDrawOptions& options) {
@@ -216,12 +250,14 @@ Sampling sample(const PosteriorProblem& problem, const BasinSearch& found, Probl
   Sampling sampling = sampleBasins(problem, found, whole, options);
   const bool all_drawn = problem.drawn == static_cast<Index>(problem.unknown.size());
   if (!sampling.obstacle.empty() && all_drawn && problem.drawn <= kManyUnknown) {
-    Sampling walked = sampleWalks(problem, found, whole, options);
-    walked.simulations += sampling.simulations;
-    if (walked.obstacle.empty()) {
-      return walked;
+    for (const auto& sample_otherwise : {sampleSums, sampleWalks}) {
+      Sampling other = sample_otherwise(problem, found, whole, options);
+      other.simulations += sampling.simulations;
+      if (other.obstacle.empty()) {
+        return other;
+      }
+      sampling.simulations = other.simulations;
     }
-    sampling.simulations = walked.simulations;
   }
   return sampling;
 }
