@@ -8,6 +8,7 @@
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/simulation/team_simulator.hpp"
 
 namespace twinmap {
 namespace {
@@ -38,6 +39,15 @@ bool areSame(const std::vector<SignalSpec>& signals, const std::vector<SignalSpe
                     });
 }
 
+/// One measurement is inferred at a time: all threads simulate for it.
+std::unique_ptr<Simulator> makeShared(const MeasurementReader& reader, SimulatorRefiner::Model model) {
+  const ModelSpec& spec = reader.getExperiment().model;
+  const ResponseLayout& layout = reader.getLayout();
+  return shareAmongThreads(model == SimulatorRefiner::Model::kTrusted
+                               ? makeTrustedSimulator(spec, layout.times, layout.modes)
+                               : makeSimulator(spec, layout.times, layout.modes));
+}
+
 }  // namespace
 
 /// An inference whose features are at the times of a table, and whose excitation is the table's.
@@ -55,7 +65,7 @@ DirectInference::~DirectInference() = default;
 DirectInference::DirectInference(const MeasurementReader& reader, int draws, SimulatorRefiner::Model model,
                                  bool profiles)
     : reader_(reader),
-      simulator_(reader.getExperiment(), reader.getLayout(), model),
+      simulator_(reader.getExperiment(), reader.getLayout(), makeShared(reader, model)),
       options_(makePosteriorOptions(reader.getExperiment(), draws)),
       quantities_(makeDerivedQuantities(reader.getExperiment())),
       prior_(findStatedPrior(reader.getExperiment().model)) {
@@ -96,7 +106,7 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
                                            const AvailableFeatures& found, const Eigen::VectorXd& known) {
   std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
   if (found.stated.isGiven()) {
-    own.emplace(reader_.getExperiment(), reader_.getLayout(), SimulatorRefiner::Model::kTrusted,
+    own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(),
                 found.stated);
   }
   const SimulatorRefiner& simulator = own ? *own : simulator_;

@@ -12,6 +12,7 @@
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
+#include "framework/simulation/team_simulator.hpp"
 
 namespace twinmap {
 
@@ -180,8 +181,9 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
     auto reader =
         std::make_unique<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
     const ExperimentSpec& experiment = reader->getExperiment();
-    auto simulator = std::make_unique<const SimulatorRefiner>(experiment, reader->getLayout(),
-                                                              SimulatorRefiner::Model::kToBeChecked);
+    const ResponseLayout& layout = reader->getLayout();
+    auto simulator = std::make_unique<const SimulatorRefiner>(
+        experiment, layout, shareAmongThreads(makeSimulator(experiment.model, layout.times, layout.modes)));
     simulator->requireNoise();
     const VectorXd inputs = collectKnown(experiment.model.inputs, parseKnownValues(known));
     members_.push_back({trial.name, std::move(reader), std::move(simulator), inputs});
@@ -227,7 +229,10 @@ const JointInferrer::Member& JointInferrer::follow(const Recording& recording) c
     return member;
   }
   auto reader = std::make_unique<const MeasurementReader>(std::move(*experiment));
-  auto simulator = std::make_unique<const SimulatorRefiner>(reader->getExperiment(), reader->getLayout());
+  const ResponseLayout& layout = reader->getLayout();
+  auto simulator = std::make_unique<const SimulatorRefiner>(
+      reader->getExperiment(), layout,
+      shareAmongThreads(makeTrustedSimulator(reader->getExperiment().model, layout.times, layout.modes)));
   return followed_
       .emplace(recording.label, Member{member.name, std::move(reader), std::move(simulator), member.known})
       .first->second;

@@ -17,7 +17,6 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "framework/experiment/points/prior.hpp"
-#include "framework/simulation/parallel_simulator.hpp"
 
 namespace twinmap {
 
@@ -70,14 +69,6 @@ NoiseHypothesis findUnknownNoise(const NoiseSpec& noise, const ResponseLayout& l
   return hypothesis;
 }
 
-/// One that simulates several samples side by side is cloned at no cost: a process of its own is not.
-std::unique_ptr<Simulator> shareBatches(std::unique_ptr<Simulator> simulator) {
-  if (simulator->getBatchSize() > 1) {
-    return std::make_unique<ParallelSimulator>(std::move(simulator));
-  }
-  return simulator;
-}
-
 }  // namespace
 
 SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws) {
@@ -109,7 +100,7 @@ SimulatorRefiner::SimulatorRefiner(const ExperimentSpec& experiment, const Respo
       noise_(extractor_, makeNoise(experiment.noise, layout, stated.rows), experiment.seed, stated.features),
       stated_noise_(findUnknownNoise(experiment.noise, layout)),
       wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
-      own_(shareBatches(simulator_->clone())) {}
+      own_(simulator_->clone()) {}
 
 const RefinementModel& SimulatorRefiner::getModel() const {
   if (!shared_) {

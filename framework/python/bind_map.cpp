@@ -24,8 +24,9 @@ struct InferRequest {
 
 /// posterior_from: "simulator", "surrogate" or "", which is neither.
 InferRequest makeRequest(Known known, std::optional<double> start, std::optional<bool> refine,
-                         int posterior_draws, const std::string& posterior_from) {
+                         int posterior_draws, const std::string& posterior_from, bool profiles) {
   SessionOptions options{refine, posterior_draws, {}};
+  options.profiles = profiles;
   for (const PosteriorSource source : {PosteriorSource::kSurrogate, PosteriorSource::kSimulator}) {
     if (posterior_from == toString(source)) {
       options.posterior_from = source;
@@ -169,7 +170,7 @@ void bindEstimate(py::module_& module) {
       .def_property_readonly("posterior", [](const Inferred& i) { return i.measurement.posterior; });
   py::class_<InferRequest>(module, "InferRequest")
       .def(py::init(&makeRequest), py::arg("known"), py::arg("start"), py::arg("refine"),
-           py::arg("posterior_draws"), py::arg("posterior_from"));
+           py::arg("posterior_draws"), py::arg("posterior_from"), py::arg("profiles"));
 }
 
 }  // namespace

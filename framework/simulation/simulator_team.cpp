@@ -47,27 +47,31 @@ int chooseThreadCount(int threads, int tasks) {
 
 }  // namespace
 
-void runOnTeam(const Simulator& prototype, int count, int threads,
-               const std::function<void(Simulator& simulator, int index)>& task) {
-  const int size = chooseThreadCount(threads, count);
-  const auto simulators = cloneSerially(prototype, size);
-  runInTeam(count, size, [&](int i, int thread) { task(*simulators[static_cast<std::size_t>(thread)], i); });
+int countThreads() {
+  return omp_in_parallel() ? 1 : omp_get_max_threads();
 }
 
-void runInTeam(int count, int threads, const std::function<void(int index, int thread)>& task) {
+void runOnTeam(const std::vector<std::unique_ptr<Simulator>>& team, int count, int size,
+               const std::function<void(Simulator& simulator, int index)>& task) {
   FirstException failure;
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
+#pragma omp parallel for num_threads(size) schedule(dynamic)
   for (int i = 0; i < count; ++i) {
     if (failure.happened()) {
       continue;
     }
     try {
-      task(i, omp_get_thread_num());
+      task(*team[static_cast<std::size_t>(omp_get_thread_num())], i);
     } catch (...) {
       failure.keepCurrent();
     }
   }
   failure.rethrow();
+}
+
+void runOnTeam(const Simulator& prototype, int count, int threads,
+               const std::function<void(Simulator& simulator, int index)>& task) {
+  const int size = chooseThreadCount(threads, count);
+  runOnTeam(cloneSerially(prototype, size), count, size, task);
 }
 
 }  // namespace twinmap

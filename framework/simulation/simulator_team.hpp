@@ -6,6 +6,9 @@
 
 namespace twinmap {
 
+/// Threads that a parallel region would have here: in another one it has one.
+int countThreads();
+
 /// Calls task(simulator, i) for i = 0 .. count - 1 on a team of threads (0: as many as OpenMP offers), each
 /// with its own clone of `prototype`. Tasks start in order and must not depend on one another. An exception
 /// of a task keeps further ones from starting and is thrown again. Throws std::invalid_argument for a
@@ -13,8 +16,8 @@ namespace twinmap {
 void runOnTeam(const Simulator& prototype, int count, int threads,
                const std::function<void(Simulator& simulator, int index)>& task);
 
-/// Calls task(i, thread) for i = 0 .. count - 1 on so many threads (at least 1), in order, `thread` counted
-/// from 0. An exception of a task keeps further ones from starting and is thrown again.
-void runInTeam(int count, int threads, const std::function<void(int index, int thread)>& task);
+/// The same on the first `size` simulators of a team that was made before, a thread each.
+void runOnTeam(const std::vector<std::unique_ptr<Simulator>>& team, int count, int size,
+               const std::function<void(Simulator& simulator, int index)>& task);
 
 }  // namespace twinmap

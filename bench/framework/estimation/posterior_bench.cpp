@@ -88,13 +88,14 @@ VectorXd PosteriorBench::drawTruth(int test) const {
   return truth;
 }
 
-std::optional<Measured> PosteriorBench::measure(int test) const {
+std::optional<Measured> PosteriorBench::measure(int test, std::string& failure) const {
   Measured measured;
   measured.truth = drawTruth(test);
   MatrixXd stencil(layout_.getRowCount() * countNeighbours(unknown_.size()), 1);
   SampleStatus status;
   simulateStencils(*machine_, unknown_, measured.truth, stencil, &status);
   if (!status.ok) {
+    failure = status.reason;
     return std::nullopt;
   }
   const LocalModel local = makeLocalModel(extractor_, unknown_, measured.truth, stencil, status);
@@ -103,6 +104,7 @@ std::optional<Measured> PosteriorBench::measure(int test) const {
                {request_.seed + 1000 * static_cast<std::uint64_t>(test), RandomPurpose::kTestNoise});
   measured.features = extractor_.extract(noisy).col(0);
   if (!measured.features.allFinite()) {
+    failure = "a feature is not finite";
     return std::nullopt;
   }
   const NoiseWhitener whitener = model_.makeWhitener(model_.getWhole(), local.response);

@@ -55,8 +55,8 @@ class PosteriorBench {
 
   const std::vector<ParameterSpec>& getParameters() const { return experiment_.model.parameters; }
 
-  /// Nothing where the machine cannot be simulated.
-  std::optional<Measured> measure(int test) const;
+  /// Nothing where the machine cannot be simulated; the reason is in `failure`.
+  std::optional<Measured> measure(int test, std::string& failure) const;
 
   /// With the random numbers of `infer`, which are the same for every measurement.
   Judged judge(const Measured& measured, int test) const;

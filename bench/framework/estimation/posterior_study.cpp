@@ -29,6 +29,7 @@ double calcMedian(std::vector<double> values) {
 struct Totals {
   std::map<std::string, int> statuses, ridges;
   int reliable = 0, ok = 0, missed = 0, wrong = 0;
+  int unmeasured = 0;  ///< machines that could not be simulated
   std::vector<double> seconds, simulations, sizes;
 };
 
@@ -50,11 +51,13 @@ Totals count(const std::vector<Judged>& judged) {
 
 void printTotals(const Totals& totals) {
   fmt::print(
-      "  {} measurements, {} with a reliable posterior; best basin missed {}, ok and more than 6 sd off {}\n"
+      "  {} measurements ({} machines could not be simulated), {} with a reliable posterior; best basin "
+      "missed "
+      "{}, ok and more than 6 sd off {}\n"
       "  median {:.3f} s of a processor (largest {:.2f}), {:.0f} simulations, effective sample size {:.0f}\n",
-      totals.seconds.size(), totals.reliable, totals.missed, totals.wrong, calcMedian(totals.seconds),
-      *std::max_element(totals.seconds.begin(), totals.seconds.end()), calcMedian(totals.simulations),
-      calcMedian(totals.sizes));
+      totals.seconds.size(), totals.unmeasured, totals.reliable, totals.missed, totals.wrong,
+      calcMedian(totals.seconds), *std::max_element(totals.seconds.begin(), totals.seconds.end()),
+      calcMedian(totals.simulations), calcMedian(totals.sizes));
   for (const auto& [status, number] : totals.statuses) {
     fmt::print("  {:5d} {}\n", number, status);
   }
@@ -187,8 +190,14 @@ StudyRequest readRequest(int argc, char** argv) {
 int run(const StudyRequest& request) {
   const PosteriorBench bench(request);
   std::vector<Judged> judged;
+  int unmeasured = 0;
   for (int test = 0; test < request.tests; ++test) {
-    if (const std::optional<Measured> measured = bench.measure(test)) {
+    std::string failure;
+    const std::optional<Measured> measured = bench.measure(test, failure);
+    if (!measured) {
+      ++unmeasured;
+      fmt::print("    {}: not simulated: {}\n", test, failure);
+    } else {
       judged.push_back(bench.judge(*measured, test));
       const Judged& last = judged.back();
       if (!last.reliable || last.missed || last.z.cwiseAbs().maxCoeff() > 4.0) {
@@ -198,9 +207,11 @@ int run(const StudyRequest& request) {
   }
   fmt::print("{}\n", request.file);
   if (judged.empty()) {
+    fmt::print("  none of {} machines could be simulated\n", unmeasured);
     return 0;
   }
-  const Totals totals = count(judged);
+  Totals totals = count(judged);
+  totals.unmeasured = unmeasured;
   printTotals(totals);
   if (totals.reliable > 0) {
     const Figures figures = summarize(judged, static_cast<Index>(bench.getParameters().size()));

@@ -110,6 +110,17 @@ BoxMixture propose(const MisfitSurface& surface, const Landscape& landscape, Ind
   return proposeFirst(projectBasins(std::move(places), drawn), shares);
 }
 
+/// A basin in the coordinates of sums.
+Basin convertBasin(const Basin& basin, const SumCoordinates& sums) {
+  Basin converted = basin;
+  const MatrixXd slopes = sums.calcSlopes(basin.local.at);
+  converted.local.at = sums.toSums(basin.local.at);
+  converted.local.descent = slopes.transpose() * basin.local.descent;
+  converted.local.information = slopes.transpose() * basin.local.information * slopes;
+  converted.covariance = calcBasinCovariance(converted.local.information);
+  return converted;
+}
+
 /// By mixtures from basins and floors of valleys.
 AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, Index drawn,
                            const PosteriorDrawOptions& options) {
@@ -169,6 +180,30 @@ AdaptiveDraws drawPosterior(MisfitSurface& surface, Landscape& landscape, Index 
   }
   landscape.valleys = followValleys(surface, landscape.basins);
   return drawMixtures(surface, landscape, kept, options);
+}
+
+AdaptiveDraws drawInSums(MisfitSurface& surface, const std::vector<Basin>& basins, const SumCoordinates& sums,
+                         const PosteriorDrawOptions& options) {
+  std::vector<Basin> straight;
+  for (const Basin& basin : basins) {
+    straight.push_back(levelBasin(convertBasin(basin, sums)));
+  }
+  const auto convert = [&](MatrixXd points) {
+    for (auto point : points.colwise()) {
+      point = sums.fromSums(point);
+    }
+    return points;
+  };
+  constexpr int kRounds = 4;  // the ridge is straight, or other sums than these are determined
+  importance::AdaptiveOptions adaptive = makeOptions();
+  adaptive.max_rounds = kRounds;
+  Numbers numbers(surface.getDimensions(), options);
+  AdaptiveDraws drawn = importance::sampleAdaptively(
+      [&](const MatrixXd& points) { return surface.calcLogPosteriors(convert(points)); },
+      proposeFirst(straight, calcShares(basins, surface)),
+      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
+  drawn.draws.points = convert(drawn.draws.points);
+  return drawn;
 }
 
 AdaptiveDraws drawAlongWalks(MisfitSurface& surface, const std::vector<Basin>& basins,

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "framework/estimation/posterior/valley.hpp"
+#include "framework/estimation/ridges/sum_coordinates.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {
@@ -28,6 +29,11 @@ std::vector<Basin> projectBasins(std::vector<Basin> basins, Eigen::Index drawn);
 /// integrated out.
 importance::AdaptiveDraws drawPosterior(MisfitSurface& surface, Landscape& landscape, Eigen::Index kept,
                                         const PosteriorDrawOptions& options);
+
+/// Draws of all coordinates, by mixtures in which sums stand for coordinates: their ridge is straight. The
+/// surface's coordinates take the parameters that are replaced as they are.
+importance::AdaptiveDraws drawInSums(MisfitSurface& surface, const std::vector<Basin>& basins,
+                                     const SumCoordinates& sums, const PosteriorDrawOptions& options);
 
 /// Draws of all coordinates where those of basins and valleys do not do, as several flat directions that bend
 /// have more ends than valleys are followed to: chains go through the valley first (walkPosterior), and the

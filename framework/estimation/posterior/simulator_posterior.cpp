@@ -1,6 +1,7 @@
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <numeric>
@@ -168,32 +169,74 @@ bool isStraighterPlain(const BasinSearch& found, ProblemSurface& whole, ProblemS
          calcNonlinearity(whole.upd(), found.basins.front(), seed);
 }
 
-/// In the logarithms, or as findRidgeShape() says; of many parameters in whichever they are straighter.
-Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                      const PosteriorDrawOptions& options) {
-  RidgeShape shape;
-  std::unique_ptr<ProblemSurface> straight;
-  if (problem.drawn > kManyUnknown) {
-    shape.plain = listAll(problem);
-    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
-    if (!isStraighterPlain(found, whole, *straight, options.seed)) {
-      shape.plain.clear();
-      straight.reset();
-    }
-  } else {
-    shape = findRidgeShape(whole.upd(), found.basins.front());
-    if (!shape.plain.empty()) {
-      straight = std::make_unique<ProblemSurface>(problem, shape.plain);
-    }
+/// As findRidgeShape() says; of many parameters the logarithms, or all as they are, whichever is straighter.
+RidgeShape chooseShape(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                       std::uint64_t seed) {
+  if (problem.drawn <= kManyUnknown) {
+    return findRidgeShape(whole.upd(), found.basins.front());
   }
+  ProblemSurface plain(problem, listAll(problem));
+  RidgeShape shape;
+  if (isStraighterPlain(found, whole, plain, seed)) {
+    shape.plain = listAll(problem);
+  }
+  return shape;
+}
+
+/// In the logarithms but for what the shape says.
+Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, const RidgeShape& shape,
+                      ProblemSurface& whole, const PosteriorDrawOptions& options) {
+  std::unique_ptr<ProblemSurface> straight;
   Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
-  if (straight) {
+  if (!shape.plain.empty()) {
+    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
     sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), straight->upd());
   }
   MisfitSurface& surface = straight ? straight->upd() : whole.upd();
   sampling.drawn = drawPosterior(surface, sampling.landscape, problem.drawn, options);
   sampling.obstacle = findObstacle(problem, surface, sampling);
   sampling.simulations = straight ? surface.getSimulations() : 0;
+  return sampling;
+}
+
+/// What the basins on a ridge show to be identified (findRidges), with points of its floor where they are
+/// few.
+std::vector<Ridge> findRidgesOf(std::vector<Basin> basins, MisfitSurface& surface,
+                                const std::vector<ParameterSpec>& unknown) {
+  constexpr std::size_t kEnough = 6;
+  if (basins.size() < kEnough) {
+    std::vector<Basin> floors = followValleys(surface, basins).floors;
+    std::move(floors.begin(), floors.end(), std::back_inserter(basins));
+  }
+  const LogCoordinates& coordinates = surface.getCoordinates();
+  std::vector<MatrixXd> information;
+  MatrixXd points(coordinates.getCount(), static_cast<Index>(basins.size()));
+  for (std::size_t k = 0; k < basins.size(); ++k) {
+    const LocalSurface& local = basins[k].local;
+    const VectorXd per_width = 2.0 * coordinates.calcSlopes(local.at).cwiseInverse();
+    information.emplace_back(per_width.asDiagonal() * local.information * per_width.asDiagonal());
+    points.col(static_cast<Index>(k)) = coordinates.toParameters(local.at);
+  }
+  return findRidges(information, points, unknown);
+}
+
+/// With the sums that alone are determined in the place of parameters, if there are some; else not reliable.
+Sampling sampleSums(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                    const PosteriorDrawOptions& options) {
+  const std::vector<Ridge> ridges = findRidgesOf(found.basins, whole.upd(), problem.unknown);
+  const SumCoordinates sums(problem.unknown, ridges);
+  Sampling sampling;
+  sampling.obstacle = "no sums are known";
+  if (sums.isEmpty()) {
+    return sampling;
+  }
+  sampling.plain = SumCoordinates::listReplaced(problem.unknown, ridges);
+  ProblemSurface plain(problem, sampling.plain);
+  MisfitSurface& surface = plain.upd();
+  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.drawn = drawInSums(surface, sampling.landscape.basins, sums, options);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  sampling.simulations = surface.getSimulations();
   return sampling;
 }
 
@@ -211,11 +254,23 @@ Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, 
   return sampling;
 }
 
+/// The straightest way first: along a bent ridge mixtures may find draws of a part of it good enough.
 Sampling sample(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                 const PosteriorDrawOptions& options) {
-  Sampling sampling = sampleBasins(problem, found, whole, options);
-  const bool all_drawn = problem.drawn == static_cast<Index>(problem.unknown.size());
-  if (!sampling.obstacle.empty() && all_drawn && problem.drawn <= kManyUnknown) {
+  const bool may_bend =
+      problem.drawn == static_cast<Index>(problem.unknown.size()) && problem.drawn <= kManyUnknown;
+  const RidgeShape shape = chooseShape(problem, found, whole, options.seed);
+  int simulations = 0;
+  if (may_bend && !shape.is_straight) {
+    Sampling in_sums = sampleSums(problem, found, whole, options);
+    if (in_sums.obstacle.empty()) {
+      return in_sums;
+    }
+    simulations += in_sums.simulations;
+  }
+  Sampling sampling = sampleBasins(problem, found, shape, whole, options);
+  sampling.simulations += simulations;
+  if (!sampling.obstacle.empty() && may_bend) {
     Sampling walked = sampleWalks(problem, found, whole, options);
     walked.simulations += sampling.simulations;
     if (walked.obstacle.empty()) {

@@ -82,8 +82,11 @@ double roundCoefficient(double value) {
   return unit * std::round(value / unit);
 }
 
-double calcSumComplexity(const Combination& sum) {
-  double complexity = 1.0;
+/// On the ridge of one measurement J + m L^2 is J + p L too, with the value p of m L there: units tell which
+/// holds elsewhere.
+double calcSumComplexity(const Combination& sum, const std::vector<ParameterSpec>& parameters) {
+  constexpr double kOfUnits = 3.0;
+  double complexity = hasOneUnit(sum, parameters) ? 1.0 : 1.0 + kOfUnits;
   for (std::size_t k = 0; k < sum.terms.size(); ++k) {
     const double coefficient = std::abs(sum.coefficients[k]);
     const bool is_simple =
@@ -254,7 +257,7 @@ std::vector<Candidate> findSums(const FlatDirections& flat, const std::vector<Pa
     Candidate candidate{fitSum(gradients, chosen), 0.0};
     if (candidate.combination.residual <= largest) {
       roundCoefficients(candidate.combination, flat, parameters);
-      candidate.complexity = calcSumComplexity(candidate.combination);
+      candidate.complexity = calcSumComplexity(candidate.combination, parameters);
       found.push_back(candidate);
     }
   });
@@ -292,7 +295,7 @@ std::vector<Candidate> findBaseParameters(const FlatDirections& flat,
     divideByFirst(sum);
     roundCoefficients(sum, flat, parameters);
     if (sum.residual <= largest) {
-      found.push_back({sum, calcSumComplexity(sum)});
+      found.push_back({sum, calcSumComplexity(sum, parameters)});
     }
   }
   return found;

@@ -1,5 +1,6 @@
 #include "framework/estimation/ridges/combination.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -96,6 +97,19 @@ Dimension dropZeros(const Dimension& dimension) {
   return kept;
 }
 
+/// Of each term; false where a parameter states no unit.
+bool listDimensions(const Combination& combination, const std::vector<ParameterSpec>& parameters,
+                    std::vector<Dimension>& dimensions) {
+  for (const VectorXi& term : combination.terms) {
+    Dimension dimension;
+    if (!addDimension(term, parameters, dimension)) {
+      return false;
+    }
+    dimensions.push_back(dropZeros(dimension));
+  }
+  return true;
+}
+
 }  // namespace
 
 double calcProduct(const VectorXi& exponents, const VectorXd& point) {
@@ -149,20 +163,17 @@ std::string makeName(const Combination& combination, const std::vector<Parameter
   return name.size() <= kLongest ? name : "combination";
 }
 
+bool hasOneUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters) {
+  std::vector<Dimension> dimensions;
+  return !listDimensions(combination, parameters, dimensions) ||
+         std::all_of(dimensions.begin(), dimensions.end(),
+                     [&](const Dimension& one) { return one == dimensions.front(); });
+}
+
 std::string findUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters) {
-  Dimension first;
-  for (std::size_t k = 0; k < combination.terms.size(); ++k) {
-    Dimension dimension;
-    if (!addDimension(combination.terms[k], parameters, dimension)) {
-      return "";
-    }
-    dimension = dropZeros(dimension);
-    if (k > 0 && dimension != first) {
-      return "";
-    }
-    first = dimension;
-  }
-  return makeUnit(first);
+  std::vector<Dimension> dimensions;
+  const bool is_known = listDimensions(combination, parameters, dimensions);
+  return is_known && hasOneUnit(combination, parameters) ? makeUnit(dimensions.front()) : "";
 }
 
 }  // namespace twinmap

@@ -31,6 +31,9 @@ std::string makeExpression(const Combination& combination, const std::vector<Par
 /// A name for it: "m_L", "k_per_m", "k_1_plus_k_2"; of at most 40 characters, or "combination".
 std::string makeName(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
+/// Whether its terms have one unit, or a parameter states none.
+bool hasOneUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters);
+
 /// Its unit in SI base units, "kg m", "1/s2"; "" where a parameter states none, where it has none, and for
 /// sums of different units.
 std::string findUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters);

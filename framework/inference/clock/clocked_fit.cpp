@@ -4,6 +4,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_simulator.hpp"
+#include "framework/simulation/team_simulator.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -79,9 +80,9 @@ std::shared_ptr<const SimulatorRefiner> makeClockedSimulator(const RecordedSampl
                                                              const VectorXd& half_widths) {
   const ModelSpec& model = recorded.experiment.model;
   const ClockedSimulator::Times times = makeTimes(recorded, faults);
-  auto simulator =
-      std::make_unique<ClockedSimulator>(makeTrustedSimulator(model, times.listAll()), times,
-                                         static_cast<Index>(model.parameters.size() + model.nuisance.size()));
+  auto simulator = std::make_unique<ClockedSimulator>(
+      shareAmongThreads(makeTrustedSimulator(model, times.listAll())), times,
+      static_cast<Index>(model.parameters.size() + model.nuisance.size()));
   ExperimentSpec experiment = recorded.experiment;
   for (std::size_t k = 0; k < faults.size(); ++k) {
     ParameterSpec size;

@@ -121,6 +121,22 @@ Json toJson(const Refined& refined, const std::vector<ParameterSpec>& parameters
   return json;
 }
 
+/// Of each parameter "log_likelihood_ratio" at the values that it is held at, and all parameters there.
+Json toJson(const std::vector<Profile>& profiles, const std::vector<ParameterSpec>& parameters) {
+  Json json = Json::object();
+  for (const Profile& profile : profiles) {
+    if (const auto held = static_cast<std::size_t>(profile.parameter); held < parameters.size()) {
+      Json& one = json[parameters[held].name.text];
+      one["log_likelihood_ratio"] = std::vector<double>(profile.log_ratios.begin(), profile.log_ratios.end());
+      for (std::size_t p = 0; p < parameters.size(); ++p) {
+        const auto row = profile.points.row(static_cast<Eigen::Index>(p));
+        one["parameters"][parameters[p].name.text] = std::vector<double>(row.begin(), row.end());
+      }
+    }
+  }
+  return json;
+}
+
 Json toJson(const PosteriorEstimate& posterior, const std::vector<ParameterSpec>& parameters) {
   Json json{{"status", posterior.getStatus()}, {"from", toString(posterior.source)}};
   if (posterior.isReliable()) {
@@ -135,6 +151,9 @@ Json toJson(const PosteriorEstimate& posterior, const std::vector<ParameterSpec>
     json["searches"] = posterior.fit->searches;
     json["found_best"] = posterior.fit->found_best;
     json["simulations"] = posterior.fit->simulations;
+  }
+  if (!posterior.profiles.empty()) {
+    json["profiles"] = toJson(posterior.profiles, parameters);
   }
   return json;
 }

@@ -186,16 +186,16 @@ class Experiment:
         known: Optional[Mapping[str, float]] = None,
         start: Optional[float] = None,
         draws: int = 512,
+        profiles: bool = False,
     ) -> Estimate:
         """Infers the parameters of one measurement without a run: its posterior, sampled on the simulator
-        (docs/how-to/sample-the-posterior.md), by so many draws a round.
+        (docs/how-to/sample-the-posterior.md), by so many draws a round. profiles: profile likelihoods as well.
 
         measurement, known, start: as Map.infer() takes them. Cost: some thousand simulations. Raises MeasurementError
         for a measurement that cannot be used, ExperimentError where a feature has no noise.
         """
-        return infer(
-            self._get_inferring(), measurement, _twinmap.InferRequest(list_known(known), start, None, draws, "")
-        )
+        request = _twinmap.InferRequest(list_known(known), start, None, draws, "", profiles)
+        return infer(self._get_inferring(), measurement, request)
 
     def diagnose(
         self,

@@ -96,6 +96,16 @@ class Estimate:
             index=pd.Index(list(found), name="quantity"),
         )
 
+    @functools.cached_property
+    def profiles(self) -> Dict[str, pd.DataFrame]:
+        """Profile likelihoods by parameter, where they were asked for: a row for each value that it is held at, with all
+        parameters as they fit best there and `log_likelihood_ratio` to the best of all."""
+        found = self.details.get("posterior", {}).get("profiles", {})
+        return {
+            name: pd.DataFrame({**one["parameters"], "log_likelihood_ratio": one["log_likelihood_ratio"]})
+            for name, one in found.items()
+        }
+
     @property
     def trust(self) -> Dict[str, Any]:
         """The numbers behind the statuses, as p_value and chi_square; empty where the run has no trust model."""
@@ -223,6 +233,7 @@ class Map:
         refine: Optional[bool] = None,
         posterior: Union[bool, int] = False,
         posterior_from: Optional[str] = None,
+        profiles: bool = False,
     ) -> Estimate:
         """Infers the parameters of one measurement and judges the estimate.
 
@@ -231,12 +242,16 @@ class Map:
         known inputs by name. start: the time in the measurement (s) that is the model's 0, instead of the
         experiment's. refine: on the simulator, or not; None: as the experiment says. posterior: the posterior as well;
         a number of draws instead of True's 512. posterior_from: "simulator" or "surrogate"; None: the simulator where
-        that takes tenths of a second. Raises MeasurementError for a measurement that cannot be used.
+        that takes tenths of a second. profiles: profile likelihoods as well, on the simulator. Raises MeasurementError
+        for a measurement that cannot be used.
         """
+        if profiles and posterior_from == "surrogate":
+            raise ValueError("profiles: are the simulator's: leave posterior_from out")
+        posterior, posterior_from = (posterior or True, "simulator") if profiles else (posterior, posterior_from)
         if posterior_from is not None and posterior_from not in ("simulator", "surrogate"):
             raise ValueError(f"posterior_from: is 'simulator' or 'surrogate', not {posterior_from!r}")
         draws = _DRAWS if posterior is True or (not posterior and posterior_from) else int(posterior)
-        request = _twinmap.InferRequest(list_known(known), start, refine, draws, posterior_from or "")
+        request = _twinmap.InferRequest(list_known(known), start, refine, draws, posterior_from or "", profiles)
         return infer(self._map, measurement, request)
 
     def read_trials(self, recordings: Mapping[str, Recording]) -> np.ndarray:

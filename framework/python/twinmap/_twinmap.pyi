@@ -127,6 +127,7 @@ class InferRequest:
         refine: Optional[bool],
         posterior_draws: int,
         posterior_from: str,
+        profiles: bool,
     ) -> None: ...
 
 class Map:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "framework/analysis/course.hpp"
+#include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/experiment/model/parameter_spec.hpp"
 
 namespace twinmap {
@@ -17,6 +18,7 @@ struct HistoryPoint {
   std::string status;  ///< "ok", "model_mismatch", ...
   bool counts = true;  ///< in the courses: false where a status says that the estimate misleads
   Eigen::VectorXd mean, stddev, lower95, upper95;
+  std::vector<Profile> profiles = {};  ///< where they were asked for
 };
 
 /// Estimates of one machine in the order of their measurements.

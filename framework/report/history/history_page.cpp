@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "framework/base/text/number_text.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr const char* kTable = "history";
+constexpr const char *kTable = "history", *kProfiles = "profiles";
 
 std::vector<double> listFigures(const History& history, std::size_t parameter,
                                 Eigen::VectorXd HistoryPoint::*figure) {
@@ -68,6 +69,56 @@ Panel makeHistoryPanel(const History& history, std::size_t p, bool has_course) {
     panel.without.insert("course");
   }
   return panel;
+}
+
+/// A row for each value of each profile of a parameter; its nuisance parameters have none.
+DataTable makeProfilesTable(const History& history) {
+  std::vector<std::string> parameters, measurements;
+  std::vector<double> values, ratios;
+  const std::vector<double> places = listPlaces(history);
+  for (std::size_t k = 0; k < history.points.size(); ++k) {
+    const HistoryPoint& point = history.points[k];
+    for (const Profile& profile : point.profiles) {
+      const auto p = static_cast<std::size_t>(profile.parameter);
+      for (Index i = 0; p < history.parameters.size() && i < profile.log_ratios.size(); ++i) {
+        parameters.push_back(history.parameters[p].name.text);
+        measurements.push_back(point.source + (isOneFile(history) ? " at " + toText(places[k]) + " s" : ""));
+        values.push_back(profile.points(profile.parameter, i));
+        ratios.push_back(profile.log_ratios[i]);
+      }
+    }
+  }
+  DataTable table;
+  table.add("parameter", std::move(parameters));
+  table.add("measurement", std::move(measurements));
+  table.add("value", std::move(values));
+  table.add("ratio", std::move(ratios));
+  return table;
+}
+
+/// Nothing where no profiles were asked for.
+void addProfiles(const History& history, Page& page) {
+  if (std::all_of(history.points.begin(), history.points.end(),
+                  [](const HistoryPoint& point) { return point.profiles.empty(); })) {
+    return;
+  }
+  page.tables[kProfiles] = makeProfilesTable(history);
+  Figure figure{
+      "profiles",
+      "Profile likelihoods",
+      "Each parameter is held at a value, and the others are fitted anew: how much less likely the "
+      "best fit becomes. Above the dashed line at -1.92 is a normal 95 % interval; what stays near 0 "
+      "is a direction that the measurement leaves open.",
+      kProfiles,
+      {},
+      {},
+      0};
+  for (const ParameterSpec& parameter : history.parameters) {
+    figure.panels.push_back({"profile", {{"name", parameter.name.text}, {"label", makeLabel(parameter)}}});
+  }
+  Section section{"profiles", "Profile likelihoods", "", {}};
+  addFigure(std::move(figure), section);
+  page.sections.push_back(std::move(section));
 }
 
 std::string makeEstimatesTable(const History& history) {
@@ -129,6 +180,7 @@ std::string makeHistoryPage(const std::string& title, const History& history,
   addFigure(std::move(figure), section);
   section.html += makeFolded("All estimates", makeEstimatesTable(history));
   page.sections.push_back(std::move(section));
+  addProfiles(history, page);
   return makePage(page);
 }
 

@@ -105,6 +105,15 @@ class Posterior(FolderTestCase):
                 self.assertLessEqual(ratios.max(), 0)
                 distances = (values - found["mean"]) / found["sd"]
                 np.testing.assert_allclose(ratios, -0.5 * distances**2, atol=1.5)
+                told = answer["posterior"]["profiles"][name]
+                np.testing.assert_allclose(told["log_likelihood_ratio"], ratios)
+                for other in TRUE:
+                    np.testing.assert_allclose(told["parameters"][other], [float(row[other]) for row in own])
+
+    def test_profiles_are_drawn_on_a_page(self):
+        page = self.folder / "page.html"
+        self.infer(self.measured, "--profile", self.folder / "p.csv", "--page", page, run=TABLE1)
+        self.assertIn("Profile likelihoods", page.read_text())
 
     def test_is_the_same_in_every_format_and_whatever_came_before(self):
         alone = json.loads(self.infer(self.measured, "--json", "--posterior"))["posterior"]

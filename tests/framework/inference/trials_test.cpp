@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/trial_reader.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/simulation/parallel_simulator.hpp"
 
 namespace twinmap {
 namespace {
@@ -110,26 +108,6 @@ TEST(TrialsSimulator, NamesTheTrialThatFails) {
   EXPECT_FALSE(statuses[1].ok);
   EXPECT_EQ(statuses[1].reason.rfind("trial 'strike': ", 0), 0u) << statuses[1].reason;
   EXPECT_TRUE(responses.hasNaN());
-}
-
-TEST(ParallelSimulator, GivesTheSameForAnyNumberOfThreads) {
-  const ExperimentSpec both = readTwo();
-  MatrixXd points(3, 70);
-  for (Index i = 0; i < points.cols(); ++i) {
-    points.col(i) << 5.0 + 0.1 * static_cast<double>(i), 0.3, 0.7;
-  }
-  const std::unique_ptr<Simulator> plain = makeOf(both);
-  const Simulated expected = simulateWithSlopes(*plain, points);
-  const int before = omp_get_max_threads();
-  for (const int threads : {1, 2, 5}) {
-    omp_set_num_threads(threads);
-    ParallelSimulator parallel(plain->clone());
-    const Simulated found = simulateWithSlopes(parallel, points);
-    EXPECT_EQ(found.responses, expected.responses);
-    EXPECT_EQ(found.derivatives, expected.derivatives);
-    EXPECT_EQ(simulateWithSlopes(*parallel.clone(), points).responses, expected.responses);
-  }
-  omp_set_num_threads(before);
 }
 
 Table makeRecordingTable(const std::vector<std::string>& names, double interval, Index rows) {

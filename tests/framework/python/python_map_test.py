@@ -129,6 +129,23 @@ class Inferring(TwoBeams):
         self.assertTrue((np.abs(by_run.mean - alone.mean) < 0.3 * alone.stddev).all())
         self.assertIn("sampled on the simulator", repr(alone))
 
+    def test_profiles_are_given_where_they_are_asked_for(self):
+        frame = self.measurement.to_frame()
+        self.assertEqual(self.map.infer(frame).profiles, {})
+        for answer in (
+            self.map.infer(frame, profiles=True),
+            twinmap.Experiment.from_yaml(self.map.to_yaml()).infer(frame, profiles=True),
+        ):
+            self.assertEqual(list(answer.profiles), list(TRUE))
+            for name, profile in answer.profiles.items():
+                self.assertEqual(list(profile.columns), [*TRUE, "log_likelihood_ratio"])
+                self.assertTrue((np.diff(profile[name]) > 0).all())
+                ratios = profile.log_likelihood_ratio
+                self.assertLess(max(ratios.iloc[0], ratios.iloc[-1]), -2)
+                self.assertLess(ratios.abs().min(), 0.3)
+        with self.assertRaisesRegex(ValueError, "leave posterior_from out"):
+            self.map.infer(frame, profiles=True, posterior_from="surrogate")
+
     def test_of_an_experiment_without_a_possible_simulation_nothing_is_believed(self):
         experiment = twinmap.Experiment.from_yaml(self.map.to_yaml())
         with self.assertRaisesRegex(twinmap.ExperimentError, "noise.stddev"):

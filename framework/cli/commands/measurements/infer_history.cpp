@@ -26,6 +26,9 @@ void InferHistory::add(const InferredMeasurement& inferred) {
   history_.points.push_back({inferred.source, inferred.start, joinStatuses(estimate.statuses, ", "),
                              std::none_of(estimate.statuses.begin(), estimate.statuses.end(), misleads),
                              estimate.mean, estimate.stddev, bounds.lower, bounds.upper});
+  if (inferred.posterior) {
+    history_.points.back().profiles = inferred.posterior->profiles;
+  }
 }
 
 }  // namespace twinmap::cli

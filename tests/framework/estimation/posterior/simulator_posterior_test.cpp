@@ -111,6 +111,44 @@ TEST(SimulatorPosterior, ReachesTheEndsOfASumWithTheDrawsThatInferTakes) {
   }
 }
 
+/// Only J + m L^2 is seen, to a ten-thousandth of what the bounds leave of J: of m and L what the bounds of J
+/// leave is uniform.
+TEST(SimulatorPosterior, FillsTheSurfaceOfABaseParameter) {
+  std::vector<ParameterSpec> unknown = testing::makeParameters(3, 0.1, 0.25);  // J, m, L
+  unknown[1].bounds = {0.5, 1.5, {}};
+  unknown[2].bounds = {0.3, 0.6, {}};
+  const auto calc = [](const VectorXd& x) { return x[0] + x[1] * x[2] * x[2]; };
+  constexpr double kNoise = 1e-4;
+  Problem problem(
+      20, [=](const VectorXd& x) -> VectorXd { return VectorXd::Constant(20, calc(x)); }, unknown, kNoise);
+  const VectorXd truth = makeVector({0.15, 1.1, 0.4});
+  constexpr int kCells = 500;
+  MatrixXd inside(3, kCells * kCells);
+  Index count = 0;
+  for (int i = 0; i < kCells; ++i) {
+    for (int j = 0; j < kCells; ++j) {
+      const double m = 0.5 + (i + 0.5) / kCells, l = 0.3 + 0.3 * (j + 0.5) / kCells;
+      const double rest = calc(truth) - m * l * l;
+      if (rest > 0.1 && rest < 0.25) {
+        inside.col(count++) << rest, m, l;
+      }
+    }
+  }
+  inside.conservativeResize(3, count);
+  const VectorXd mean = inside.rowwise().mean();
+  const VectorXd stddev = (inside.colwise() - mean).rowwise().norm() / std::sqrt(static_cast<double>(count));
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const SimulatorPosterior posterior =
+        sample(problem, problem.measure(truth, kNoise, seed), SimulatorPosteriorOptions{}.draws);
+    ASSERT_TRUE(posterior.isReliable()) << posterior.message;
+    EXPECT_EQ(posterior.modes.size(), 1U);
+    for (Index j = 0; j < 3; ++j) {
+      EXPECT_NEAR(posterior.mean[j], mean[j], 0.1 * stddev[j]);
+      EXPECT_NEAR(posterior.stddev[j] / stddev[j], 1.0, 0.1);
+    }
+  }
+}
+
 /// Errors that all measurements share are none of chance: 512 independent draws have 5 % of a standard
 /// deviation in the mean and 4 % in the standard deviation, whatever is measured.
 TEST(SimulatorPosterior, HasTheMomentsOfANormalPosteriorWithTheDrawsThatInferTakes) {

@@ -28,8 +28,10 @@ using Determined = std::function<VectorXd(const VectorXd&)>;
 
 /// The information about the parameters at 40 points of the box where functions of them are measured to 1e-3
 /// of what they change over it, by exact derivatives (complex steps would do no better than central
-/// differences of polynomials here).
-std::vector<Ridge> findIn(const std::vector<ParameterSpec>& parameters, const Determined& determined) {
+/// differences of polynomials here). place: where a point is put.
+std::vector<Ridge> findIn(
+    const std::vector<ParameterSpec>& parameters, const Determined& determined,
+    const Determined& place = [](const VectorXd& point) { return point; }) {
   constexpr Index kPoints = 40;
   constexpr double kStep = 1e-5;
   const VectorXd widths = calcWidths(parameters), lower = calcLowerBounds(parameters);
@@ -41,6 +43,7 @@ std::vector<Ridge> findIn(const std::vector<ParameterSpec>& parameters, const De
       points(j, i) = lower[j] + widths[j] * random.calcUniform(static_cast<std::uint64_t>(i),
                                                                static_cast<std::uint64_t>(j));
     }
+    points.col(i) = place(points.col(i));
     const VectorXd value = determined(points.col(i));
     MatrixXd jacobian(value.size(), widths.size());
     for (Index j = 0; j < widths.size(); ++j) {
@@ -149,6 +152,21 @@ TEST(IdentifiedCombinations, NameBaseParametersOfAPendulum) {
   EXPECT_EQ(makeDerivedYaml(ridges, parameters),
             "derived:\n  m_L: {value: m * L, unit: kg m}\n"
             "  J_plus_m_L2: {value: J + m * L^2, unit: kg m2}\n");
+}
+
+TEST(IdentifiedCombinations, HaveTermsOfOneUnitWhereAllPointsAreOfOneMeasurement) {
+  // where m L is .45 everywhere, J + .45 L is as good, and simpler
+  const std::vector<ParameterSpec> parameters{makeParameter("m", "kg", 0.5, 1.5),
+                                              makeParameter("L", "m", 0.3, 0.6),
+                                              makeParameter("J", "kg m2", 0.05, 0.3)};
+  const Determined place = [](const VectorXd& x) -> VectorXd {
+    return Eigen::Vector3d(0.45 / x[1], x[1], 0.3 - 0.45 * x[1]);
+  };
+  const auto determined = [](const VectorXd& x) {
+    return Eigen::Vector2d(x[2] + x[0] * x[1] * x[1], x[0] * x[1]).eval();
+  };
+  EXPECT_EQ(listExpressions(findIn(parameters, determined, place), parameters),
+            (Names{"m * L", "J + m * L^2"}));
 }
 
 TEST(IdentifiedCombinations, NameBaseParametersOfTwoLinks) {

@@ -24,10 +24,13 @@ class SensorRecorder {
     signal_ = y;
   }
 
+  /// y'' = frequency^2 (signal - y) - damping frequency y', as y and z = y + y' / frequency: both are of the
+  /// signal's size, so that errors count by what a reading shows of them. Those of y' itself count by how
+  /// slow the signal is: at a current between the samples of a controller they asked for twice the steps.
   void addSecondOrder(const Symbol& frequency, double damping) {
-    const Symbol y = states_[next_++], speed = states_[next_++];
-    add(speed, quantity_);
-    add(frequency * (frequency * (signal_ - y) - Symbol(damping) * speed), 0.0);
+    const Symbol y = states_[next_++], z = states_[next_++];
+    add(frequency * (z - y), quantity_);
+    add(frequency * (signal_ - y + Symbol(1.0 - damping) * (z - y)), quantity_);
     signal_ = y;
   }
 
