@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/estimation/posterior/linear_posterior.hpp"
+#include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"

@@ -8,8 +8,8 @@
 
 #include "framework/estimation/informativeness.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
-#include "framework/estimation/posterior/linear_posterior.hpp"
-#include "framework/estimation/posterior/posterior_draws.hpp"
+#include "framework/estimation/posterior/draws/linear_posterior.hpp"
+#include "framework/estimation/posterior/draws/posterior_draws.hpp"
 #include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "framework/estimation/posterior/basin_search.hpp"
-#include "framework/estimation/posterior/posterior_draws.hpp"
+#include "framework/estimation/posterior/draws/posterior_draws.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
 #include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/estimation/refined/misfit.hpp"

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/local_walk.hpp"
+#include "framework/estimation/posterior/draws/local_walk.hpp"
 
 #include <gtest/gtest.h>
 

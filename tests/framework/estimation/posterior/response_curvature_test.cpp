@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/response_curvature.hpp"
+#include "framework/estimation/posterior/draws/response_curvature.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "framework/estimation/posterior/basin_search.hpp"
-#include "framework/estimation/posterior/response_curvature.hpp"
+#include "framework/estimation/posterior/draws/response_curvature.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/marginal_surface.hpp"
+#include "framework/estimation/posterior/draws/marginal_surface.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/posterior_draws.hpp"
+#include "framework/estimation/posterior/draws/posterior_draws.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 
 #include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/base/random/standard_normal.hpp"
-#include "framework/estimation/posterior/linear_posterior.hpp"
-#include "framework/estimation/posterior/local_walk.hpp"
-#include "framework/estimation/posterior/marginal_surface.hpp"
+#include "framework/estimation/posterior/draws/linear_posterior.hpp"
+#include "framework/estimation/posterior/draws/local_walk.hpp"
+#include "framework/estimation/posterior/draws/marginal_surface.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "kernels/linalg/decompositions.hpp"
 

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/linear_posterior.hpp"
+#include "framework/estimation/posterior/draws/linear_posterior.hpp"
 
 #include <algorithm>
 #include <limits>
