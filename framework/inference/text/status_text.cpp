@@ -228,6 +228,12 @@ std::string dropRemedies(const std::string& explained) {
   return text;
 }
 
+/// Whether the residual is tested with noise, spikes or a clock other than stated: the statuses say what.
+bool isOtherThanStated(const InferredMeasurement& inferred, const SimulatorFit& fit) {
+  return !fit.outliers.empty() || fit.getNoiseFactor() != 1.0 || fit.isColoured() || fit.hasOffset() ||
+         !inferred.clock_faults.empty();
+}
+
 /// The statuses with the numbers that they follow from.
 std::string describeJudgement(const InferredMeasurement& inferred, const std::string& statuses) {
   if (inferred.trust) {
@@ -244,7 +250,8 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::st
   const SimulatorFit& fit = *inferred.posterior->fit;
   constexpr double kSmall = 1e-4;  // no reader needs to know more, and small ones underflow
   const double p = fit.test.calcPValue();
-  return fit.isSimulated() ? fmt::format("{} ({}, chi-square {:.4g} of {:.4g} degrees of freedom)", statuses,
+  return fit.isSimulated() ? fmt::format("{} ({}{}, chi-square {:.4g} of {:.4g} degrees of freedom)",
+                                         statuses, isOtherThanStated(inferred, fit) ? "with that " : "",
                                          p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p),
                                          fit.chi_square, fit.degrees)
                            : statuses;
