@@ -27,7 +27,7 @@ void describe(Fields& f, FilterSpec& s) {
 /// which it is taken to have had before. Texts that are empty: none.
 struct SensorSpec {
   Expression lag{"", {}};      ///< s; time constant
-  Expression delay{"", {}};    ///< s; negative where a recorder's clock is early
+  Expression delay{"", {}};    ///< s
   Expression average{"", {}};  ///< s; the window of a moving average
   std::optional<FilterSpec> filter;
   std::optional<double> quantum;  ///< in the output's unit
@@ -44,8 +44,7 @@ void describe(Fields& f, SensorSpec& s) {
   f.optional("lag", s.lag, "time constant of a lag of first order", Unit{"s"});
   f.optional("filter", s.filter, "a low-pass filter");
   f.optional("average", s.average, "window of a moving average", Unit{"s"});
-  f.optional("delay", s.delay, "from the quantity to its reading; negative: its recorder is early",
-             Unit{"s"});
+  f.optional("delay", s.delay, "from the quantity to its reading", Unit{"s"});
   f.optional("range", s.range, "[lowest, highest] reading, in the output's unit; clips before it rounds");
   f.optional("quantum", s.quantum, "step to whose nearest multiple it rounds, in the output's unit",
              kPositive);
