@@ -156,8 +156,20 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
                   outliers.size() > kShown ? " ..." : ""));
 }
 
-std::string explainClock(const std::vector<ClockFault>& faults) {
-  return explainNotice(Notice::kClockFault, fmt::format("{}", fmt::join(describe(faults), "; ")));
+/// With the term of the model that would explain the recording as well.
+std::string explainClock(const InferredMeasurement& inferred) {
+  constexpr double kAsWell = 0.9;  // of the misfit beyond the noise
+  const MissingTerm* term = inferred.missing ? &*inferred.missing : nullptr;
+  const auto is_clock = [](const std::string& name) {  // of the candidates
+    return name.rfind("delay.", 0) == 0 || name.rfind("clock.", 0) == 0;
+  };
+  const bool other = term != nullptr && term->share > kAsWell && !is_clock(term->term);
+  return explainNotice(
+      Notice::kClockFault,
+      fmt::format("{}{}", fmt::join(describe(inferred.clock_faults), "; "),
+                  other ? fmt::format(", or the model lacks {} ({}), which explains {:.0f} % of the misfit",
+                                      term->term, term->meaning, 100.0 * term->share)
+                        : ""));
 }
 
 /// Of each output whose noise is coloured, or has an offset.
@@ -202,7 +214,7 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
     return explainOutliers(inferred.posterior->fit->outliers);
   }
   if (is(Notice::kClockFault)) {
-    return explainClock(inferred.clock_faults);
+    return explainClock(inferred);
   }
   for (const Notice notice : {Notice::kNoiseLarger, Notice::kNoiseSmaller}) {
     if (is(notice)) {
