@@ -8,9 +8,9 @@
 
 #include "framework/experiment/expression/jumps.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/mechanism/delay_reach.hpp"
 #include "framework/models/mechanism/describe_model.hpp"
 #include "framework/models/mechanism/lanes/lane_engine.hpp"
+#include "framework/models/mechanism/lanes/recording/delay_reach.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 #include "framework/models/mechanism/simbody_model.hpp"
 #include "framework/models/mechanism/system_numbers.hpp"

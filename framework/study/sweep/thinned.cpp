@@ -38,14 +38,15 @@ ExperimentSpec takeEvery(ExperimentSpec experiment, int step) {
   return experiment;
 }
 
-/// The first part of the record, with as many samples closer together.
+/// The first part of the record, with as many samples closer together, and as much time behind the last.
 ExperimentSpec takeFirst(ExperimentSpec experiment, double part) {
+  const Eigen::VectorXd times = collectTimes(experiment.features);
   for (FeatureSpec& feature : experiment.features) {
     auto& samples = std::get<SamplesFeatureSpec>(feature);
     samples.start *= part;
     samples.interval *= part;
   }
-  experiment.model.simulation.duration *= part;
+  experiment.model.simulation.duration -= (1.0 - part) * times[times.size() - 1];
   return experiment;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/models/mechanism/delay_reach.hpp"
+#include "framework/models/mechanism/lanes/recording/delay_reach.hpp"
 #include "framework/models/mechanism/varying_expressions.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 

@@ -1,4 +1,4 @@
-#include "framework/models/mechanism/delay_reach.hpp"
+#include "framework/models/mechanism/lanes/recording/delay_reach.hpp"
 
 #include <fmt/core.h>
 
