@@ -1,10 +1,11 @@
 """How estimates from recordings with faults hold, on mechanisms of different kinds.
 
-Usage: recordings.py TWINMAP [--tests N] [--by-run] [--seed S] [--mechanisms NAME ...] [--faults NAME ...]
+Usage: recordings.py TWINMAP [--tests N] [--by-run] [--limits N] [--seed S] [--mechanisms NAME ...] [--faults NAME ...]
 Simulates measurements of random parameters (uniform within the bounds) with noise, disturbs each in one way, and infers them
 from the experiment file, or by a trained run (--by-run). Prints for each mechanism and fault: the share of 95 % intervals that
-hold the truth, their number, the share of estimates with each status, and how many called `ok` are more than 6 standard
-deviations off.
+hold the truth, their number, the median of the standard deviations over what the samples left allow (Fisher information at
+the truth, of the parameters with the nuisance, uniform within their bounds; of the first tests), the share of estimates with each status, how many
+called `ok` are more than 6 standard deviations off, how many are errors, and the time of an inference.
 """
 import argparse
 import collections
@@ -14,6 +15,7 @@ import json
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 import numpy as np
@@ -35,17 +37,18 @@ MECHANISMS = {
 
 
 class Recording:
-    """Columns of a measurement by name, the times first; the noise of each output."""
+    """Columns of a measurement by name, the times first; the noise of each output, and which samples say something."""
 
     def __init__(self, text, noise):
         rows = list(csv.reader(io.StringIO(text)))
         self.names = rows[0]
         self.values = np.array(rows[1:], dtype=float)
         self.noise = noise
+        self.left = np.ones((len(self.values), len(self.names) - 1), dtype=bool)
 
     def outputs(self):
         for i, name in enumerate(self.names[1:], start=1):
-            yield self.values[:, i], self.noise[name.split(" ")[0]]
+            yield self.values[:, i], self.noise[name.split(" ")[0]], self.left[:, i - 1]
 
     def to_text(self):
         lines = [",".join(self.names)]
@@ -58,31 +61,35 @@ def keep(recording, rng):
 
 
 def lose_tenth(recording, rng):
-    for values, _ in recording.outputs():
-        values[rng.random(len(values)) < 0.1] = np.nan
+    for values, _, left in recording.outputs():
+        left[:] = rng.random(len(values)) >= 0.1
+        values[~left] = np.nan
 
 
 def lose_block(recording, rng):
     n = len(recording.values)
     first = rng.integers(0, n - n // 5)
+    recording.left[first : first + n // 5] = False
     recording.values = np.delete(recording.values, slice(first, first + n // 5), axis=0)
 
 
 def add_spikes(recording, rng):
-    for values, noise in recording.outputs():
+    for values, noise, left in recording.outputs():
         hit = rng.random(len(values)) < 0.01
         hit[rng.integers(len(values))] = True
         values[hit] += noise * rng.uniform(20, 500, hit.sum()) * rng.choice([-1, 1], hit.sum())
+        left[hit] = False
 
 
 def thin_first(recording, rng):
-    values, _ = next(recording.outputs())
-    values[np.arange(len(values)) % 3 != 0] = np.nan
+    values, _, left = next(recording.outputs())
+    left[:] = np.arange(len(values)) % 3 == 0
+    values[~left] = np.nan
 
 
 def add_noise(recording, rng, rho, factor=1.0):
     """Replaces nothing: the file was simulated without noise."""
-    for values, noise in recording.outputs():
+    for values, noise, _ in recording.outputs():
         e = rng.standard_normal(len(values))
         for i in range(1, len(e)):
             e[i] = rho * e[i - 1] + np.sqrt(1 - rho**2) * e[i]
@@ -99,6 +106,7 @@ FAULTS = {
     "noise_third": keep,
     "noise_unknown": keep,
     "clipped": keep,
+    "delay_unknown": keep,
     "rho_0.5": lambda recording, rng: add_noise(recording, rng, 0.5),
     "rho_0.9": lambda recording, rng: add_noise(recording, rng, 0.9),
 }
@@ -129,8 +137,17 @@ FAULTS.update({name: keep for name in CLOCKS})
 FAULTS["spikes_noise_unknown"] = add_spikes
 
 
-def draw(parameters, rng):
-    return {name: rng.uniform(*map(float, spec["bounds"])) for name, spec in (parameters or {}).items()}
+def get_bounds(spec, kind):
+    return {name: tuple(map(float, one["bounds"])) for name, one in (spec.get(kind) or {}).items()}
+
+
+def draw(spec, rng):
+    """Of parameters and nuisance, as overrides."""
+    return {
+        f"{kind}.{name}": rng.uniform(*bounds)
+        for kind in ("parameters", "nuisance")
+        for name, bounds in get_bounds(spec, kind).items()
+    }
 
 
 def call(twinmap, *arguments, text=None, may_fail=False):
@@ -151,12 +168,14 @@ def describe_times(spec, fault, rng):
     return stamps[kept], f"features=[{', '.join(blocks)}]"
 
 
+def list_overrides(values):
+    return [f"{name}={value!r}" for name, value in values.items()]
+
+
 def simulate(twinmap, file, spec, fault, rng):
-    """A recording and the parameters that it is of."""
-    truth = draw(spec["parameters"], rng)
-    values = [f"parameters.{name}={value!r}" for name, value in truth.items()]
-    values += [f"nuisance.{name}={value!r}" for name, value in draw(spec.get("nuisance"), rng).items()]
-    values += [f"seed={rng.integers(1 << 31)}", f"noise.scale={NOISE_SCALE.get(fault, 1.0)}"]
+    """A recording and the parameters and nuisance that it is of."""
+    truth = draw(spec, rng)
+    values = [*list_overrides(truth), f"seed={rng.integers(1 << 31)}", f"noise.scale={NOISE_SCALE.get(fault, 1.0)}"]
     noise = [] if fault.startswith("rho") else ["--noise"]
     stamps, features = describe_times(spec, fault, rng) if fault in CLOCKS else (None, None)
     text = call(twinmap, "simulate", file, *noise, *values, *([features] if features else []))
@@ -165,6 +184,52 @@ def simulate(twinmap, file, spec, fault, rng):
     if stamps is not None:
         recording.values[:, 0] = stamps
     return recording, truth
+
+
+def whiten(jacobian, rho):
+    """Of autoregressive noise of unit variance, whose samples are the first axis."""
+    later = (jacobian[1:] - rho * jacobian[:-1]) / np.sqrt(1 - rho**2)
+    return np.concatenate([jacobian[:1], later])
+
+
+class Limit:
+    """What samples allow, by mechanism and point (derivatives are taken once)."""
+
+    STEP = 1e-4  # of the bounds
+    EXACTLY = ["simulation.relative_tolerance=1e-11", "simulation.absolute_tolerance=1e-13"]
+
+    def __init__(self, twinmap):
+        self.twinmap = twinmap
+        self.jacobians = {}
+
+    def simulate(self, file, point):
+        rows = csv.reader(io.StringIO(call(self.twinmap, "simulate", file, *self.EXACTLY, *list_overrides(point))))
+        return np.array(list(rows)[1:], dtype=float)[:, 1:]
+
+    def differentiate(self, file, spec, point):
+        """times x outputs x unknown, each in its bounds' width"""
+        columns = []
+        for kind in ("parameters", "nuisance"):
+            for name, (low, high) in get_bounds(spec, kind).items():
+                key, step = f"{kind}.{name}", self.STEP * (high - low)
+                ends = [self.simulate(file, {**point, key: point[key] + side * step}) for side in (1, -1)]
+                columns.append((ends[0] - ends[1]) / (2 * self.STEP))
+        return np.stack(columns, axis=2)
+
+    def calc(self, file, spec, fault, recording, truth):
+        """Standard deviation of each parameter"""
+        key = tuple(truth.items())
+        if key not in self.jacobians:
+            self.jacobians[key] = self.differentiate(file, spec, truth)
+        noise = np.array([recording.noise[name.split(" ")[0]] for name in recording.names[1:]])
+        scaled = self.jacobians[key] / (NOISE_SCALE.get(fault, 1.0) * noise)[:, None]
+        if fault.startswith("rho"):
+            scaled = whiten(scaled, float(fault[4:]))
+        scaled = scaled[recording.left]
+        uniform = 12.0  # information, in widths of the bounds
+        covariance = np.linalg.inv(scaled.T @ scaled + uniform * np.eye(scaled.shape[1]))
+        widths = [high - low for low, high in get_bounds(spec, "parameters").values()]
+        return dict(zip(get_bounds(spec, "parameters"), np.sqrt(np.diag(covariance))[: len(widths)] * widths))
 
 
 def describe_sensors(spec, fault, recordings):
@@ -177,50 +242,97 @@ def describe_sensors(spec, fault, recordings):
     for i, name in enumerate(recordings[0].names[1:], start=1):
         limit = 0.8 * max(np.abs(recording.values[:, i]).max() for recording in recordings)
         for recording in recordings:
+            recording.left[:, i - 1] = np.abs(recording.values[:, i]) < limit
             recording.values[:, i] = recording.values[:, i].clip(-limit, limit)
         ranges.append(f"measurement.range.{name.split(' ')[0]}=[{-limit!r}, {limit!r}]")
     return ranges
+
+
+def write_variant(twinmap, file, overrides, folder):
+    """The file with overrides, where its own folder's files are found."""
+    resolved = Path(file).parent / f".recordings-{folder.name}-{Path(file).name}"
+    resolved.write_text(call(twinmap, "check", "--full", file, *overrides))
+    return resolved
+
+
+def describe_variant(spec, fault):
+    """What is unknown beside, as overrides."""
+    if fault != "delay_unknown":
+        return []
+    (samples,) = [feature["samples"] for feature in spec["features"]]
+    most = 5 * samples["interval"]
+    late = f"{{late: {{bounds: [{-most!r}, {most!r}], unit: s}}}}"
+    nuisance = [f"nuisance.late={late[7:-1]}"] if spec.get("nuisance") else [f"nuisance={late}"]
+    end = samples["start"] + (samples["count"] - 1) * samples["interval"] + most
+    duration = max(float(spec["simulation"]["duration"]), round(end, 9))
+    return [*nuisance, f"outputs.{samples['outputs'][0]}.sensor.delay=late", f"simulation.duration={duration!r}"]
 
 
 def make_source(twinmap, file, overrides, by_run, folder):
     if by_run:
         call(twinmap, "run", file, *overrides, "evaluation.limit=false", "--quiet", "--out", folder / "run")
         return folder / "run"
-    resolved = Path(file).parent / f".recordings-{Path(file).name}"
-    resolved.write_text(call(twinmap, "check", "--full", file, *overrides))
-    return resolved
+    return write_variant(twinmap, file, overrides, folder)
 
 
-def measure(twinmap, file, fault, arguments):
+def measure(twinmap, file, fault, arguments, limit):
+    """Of each recording the answer, the truth and the limit; s of an inference."""
     rng = np.random.default_rng(arguments.seed)
     spec = yaml.safe_load(Path(file).read_text())
-    simulated = [simulate(twinmap, file, spec, fault, rng) for _ in range(arguments.tests)]
-    overrides = describe_sensors(spec, fault, [recording for recording, _ in simulated])
-    for recording, _ in simulated:
-        FAULTS[fault](recording, rng)
-    with tempfile.TemporaryDirectory() as folder:
-        source = make_source(twinmap, file, overrides, arguments.by_run, Path(folder))
-        texts = "\n".join(recording.to_text() for recording, _ in simulated)
-        lines = call(twinmap, "infer", source, "--follow", text=texts, may_fail=True).splitlines()
-        if not arguments.by_run:
-            source.unlink()
-    return [(json.loads(line), truth) for line, (_, truth) in zip(lines, simulated)]
+    with tempfile.TemporaryDirectory(prefix="recordings") as name:
+        folder = Path(name)
+        made = [variant := write_variant(twinmap, file, describe_variant(spec, fault), folder)]
+        try:
+            spec = yaml.safe_load(variant.read_text())
+            simulated = [simulate(twinmap, variant, spec, fault, rng) for _ in range(arguments.tests)]
+            overrides = describe_sensors(spec, fault, [recording for recording, _ in simulated])
+            for recording, _ in simulated:
+                FAULTS[fault](recording, rng)
+            limits = [
+                None if fault in CLOCKS or i >= arguments.limits else limit.calc(variant, spec, fault, recording, truth)
+                for i, (recording, truth) in enumerate(simulated)
+            ]
+            (folder / "source").mkdir()
+            source = make_source(twinmap, variant, overrides, arguments.by_run, folder / "source")
+            made += [source] if source.is_file() else []
+            texts = "\n".join(recording.to_text() for recording, _ in simulated)
+            start = time.perf_counter()
+            lines = call(twinmap, "infer", source, "--follow", text=texts, may_fail=True).splitlines()
+            seconds = (time.perf_counter() - start) / len(simulated)
+        finally:
+            for path in made:
+                path.unlink()
+    truths = [{key.split(".")[1]: value for key, value in truth.items()} for _, truth in simulated]
+    return list(zip(map(json.loads, lines), truths, limits)), seconds
 
 
-def summarise(results):
-    held, statuses, wrong, errors = [], collections.Counter(), 0, 0
-    for estimate, truth in results:
-        if "error" in estimate:
-            errors += 1
-            continue
-        statuses.update(estimate["statuses"])
-        for name, found in estimate["parameters"].items():
-            if found["mean"] is None:
+class Cell:
+    """Of one mechanism and fault."""
+
+    def __init__(self, results):
+        self.held, self.ratios, self.statuses = [], [], collections.Counter()
+        self.tests, self.wrong, self.errors = len(results), 0, 0
+        for estimate, truth, limits in results:
+            if "error" in estimate:
+                self.errors += 1
                 continue
-            held.append(any(low <= truth[name] <= high for low, high in found["intervals95"]))
-            wrong += estimate["statuses"] == ["ok"] and abs(found["mean"] - truth[name]) > 6 * found["sd"]
-    shares = ", ".join(f"{name} {count / len(results):.3g}" for name, count in statuses.most_common())
-    return np.mean(held), len(held), shares, wrong, errors
+            self.statuses.update(estimate["statuses"])
+            for name, found in estimate["parameters"].items():
+                if found["mean"] is not None:
+                    self.add(estimate["statuses"], found, truth[name], limits[name] if limits else None)
+
+    def add(self, statuses, found, truth, limit):
+        self.held.append(any(low <= truth <= high for low, high in found["intervals95"]))
+        self.ratios += [found["sd"] / limit] if limit else []
+        self.wrong += statuses == ["ok"] and abs(found["mean"] - truth) > 6 * found["sd"]
+
+    def describe(self, seconds):
+        shares = ", ".join(f"{name} {count / self.tests:.3g}" for name, count in self.statuses.most_common())
+        ratio = f"{np.median(self.ratios):.3f}" if self.ratios else ""
+        return (
+            f"{np.mean(self.held):.3f} | {len(self.held)} | {ratio} | {shares} | {self.wrong} "
+            f"| {self.errors} | {seconds:.2f} s"
+        )
 
 
 def main():
@@ -228,17 +340,19 @@ def main():
     parser.add_argument("twinmap")
     parser.add_argument("--tests", type=int, default=40)
     parser.add_argument("--by-run", action="store_true")
+    parser.add_argument("--limits", type=int, default=20, help="tests whose limit is computed")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--mechanisms", nargs="+", choices=MECHANISMS, default=list(MECHANISMS))
     parser.add_argument("--faults", nargs="+", choices=FAULTS, default=list(FAULTS))
     arguments = parser.parse_args()
-    print("| fault | mechanism | coverage95 | intervals | statuses | ok and wrong | errors |")
-    print("|---|---|--:|--:|---|--:|--:|")
+    limit = Limit(arguments.twinmap)
+    print("| fault | mechanism | coverage95 | intervals | sd over limit | statuses | ok and wrong | errors | time |")
+    print("|---|---|--:|--:|--:|---|--:|--:|--:|")
     for fault in arguments.faults:
         for name in arguments.mechanisms:
             file = EXPERIMENTS / f"{MECHANISMS[name]}.yaml"
-            coverage, count, shares, wrong, errors = summarise(measure(arguments.twinmap, file, fault, arguments))
-            print(f"| {fault} | {name} | {coverage:.3f} | {count} | {shares} | {wrong} | {errors} |", flush=True)
+            results, seconds = measure(arguments.twinmap, file, fault, arguments, limit)
+            print(f"| {fault} | {name} | {Cell(results).describe(seconds)} |", flush=True)
 
 
 if __name__ == "__main__":

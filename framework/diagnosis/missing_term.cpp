@@ -17,8 +17,8 @@ namespace {
 /// The unknown parameters that explain a measurement best, as far as is known.
 VectorXd findBest(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& unknown) {
   const auto u = static_cast<Index>(unknown.size());
-  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->best.size() == u) {
-    return inferred.posterior->fit->best;
+  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->best.size() >= u) {
+    return inferred.posterior->fit->best.head(u);  // before the sizes of a clock's faults
   }
   return inferred.explanation.size() >= u ? VectorXd(inferred.explanation.head(u)) : calcBoxCenter(unknown);
 }

@@ -19,7 +19,7 @@ struct Sample {
   std::vector<double> initial;    ///< states, then their sensitivities direction by direction
   std::vector<Phase> phases;      ///< one or more, their begins strictly increasing
   double end = 0.0;               ///< s; of the last phase
-  std::vector<double> delays{};   ///< s, >= 0; values of Equations::delays
+  std::vector<double> delays{};   ///< s; values of Equations::delays
   double* outputs = nullptr;      ///< output by output, each at all times
   double* derivatives = nullptr;  ///< direction by direction, each as `outputs`; null if there are none
 };

@@ -156,8 +156,20 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
                   outliers.size() > kShown ? " ..." : ""));
 }
 
-std::string explainClock(const std::vector<ClockFault>& faults) {
-  return explainNotice(Notice::kClockFault, fmt::format("{}", fmt::join(describe(faults), "; ")));
+/// With the term of the model that would explain the recording as well.
+std::string explainClock(const InferredMeasurement& inferred) {
+  constexpr double kAsWell = 0.9;  // of the misfit beyond the noise
+  const MissingTerm* term = inferred.missing ? &*inferred.missing : nullptr;
+  const auto is_clock = [](const std::string& name) {  // of the candidates
+    return name.rfind("delay.", 0) == 0 || name.rfind("clock.", 0) == 0;
+  };
+  const bool other = term != nullptr && term->share > kAsWell && !is_clock(term->term);
+  return explainNotice(
+      Notice::kClockFault,
+      fmt::format("{}{}", fmt::join(describe(inferred.clock_faults), "; "),
+                  other ? fmt::format(", or the model lacks {} ({}), which explains {:.0f} % of the misfit",
+                                      term->term, term->meaning, 100.0 * term->share)
+                        : ""));
 }
 
 /// Of each output whose noise is coloured, or has an offset.
@@ -202,7 +214,7 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
     return explainOutliers(inferred.posterior->fit->outliers);
   }
   if (is(Notice::kClockFault)) {
-    return explainClock(inferred.clock_faults);
+    return explainClock(inferred);
   }
   for (const Notice notice : {Notice::kNoiseLarger, Notice::kNoiseSmaller}) {
     if (is(notice)) {
@@ -228,6 +240,12 @@ std::string dropRemedies(const std::string& explained) {
   return text;
 }
 
+/// Whether the residual is tested with noise, spikes or a clock other than stated: the statuses say what.
+bool isOtherThanStated(const InferredMeasurement& inferred, const SimulatorFit& fit) {
+  return !fit.outliers.empty() || fit.getNoiseFactor() != 1.0 || fit.isColoured() || fit.hasOffset() ||
+         !inferred.clock_faults.empty();
+}
+
 /// The statuses with the numbers that they follow from.
 std::string describeJudgement(const InferredMeasurement& inferred, const std::string& statuses) {
   if (inferred.trust) {
@@ -244,7 +262,8 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::st
   const SimulatorFit& fit = *inferred.posterior->fit;
   constexpr double kSmall = 1e-4;  // no reader needs to know more, and small ones underflow
   const double p = fit.test.calcPValue();
-  return fit.isSimulated() ? fmt::format("{} ({}, chi-square {:.4g} of {:.4g} degrees of freedom)", statuses,
+  return fit.isSimulated() ? fmt::format("{} ({}{}, chi-square {:.4g} of {:.4g} degrees of freedom)",
+                                         statuses, isOtherThanStated(inferred, fit) ? "with that " : "",
                                          p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p),
                                          fit.chi_square, fit.degrees)
                            : statuses;

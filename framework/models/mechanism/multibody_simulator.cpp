@@ -10,6 +10,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/describe_model.hpp"
 #include "framework/models/mechanism/lanes/lane_engine.hpp"
+#include "framework/models/mechanism/lanes/recording/delay_reach.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 #include "framework/models/mechanism/simbody_model.hpp"
 #include "framework/models/mechanism/system_numbers.hpp"
@@ -120,6 +121,7 @@ class MultibodySimulator::Impl {
       checkSimulation(shared_->model.simulation);
     }
     checkSampleTimes(shared_->layout.times, shared_->model.simulation.duration);
+    requireWithinSimulation(shared_->model, shared_->layout.times);
     shared_->layout.output_units = twinmap::getOutputUnits(shared_->model.outputs, context_.names);
     for (const OutputSpec& output : shared_->model.outputs) {
       shared_->layout.output_names.push_back(output.name.text);

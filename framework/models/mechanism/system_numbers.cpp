@@ -179,13 +179,25 @@ void checkSensor(const SensorSpec& sensor, const std::string& owner, ModelNumber
   if (sensor.filter) {
     numbers.calcPositive(sensor.filter->cutoff, {owner, "sensor.filter.cutoff", "Hz"});
   }
-  calcNonNegative(sensor.delay, {owner, "sensor.delay", "s"}, numbers);
+}
+
+bool isReadByControllers(const OutputSpec& output, const SystemSpec& system) {
+  return std::any_of(
+      system.controllers.begin(), system.controllers.end(), [&](const ControllerSpec& controller) {
+        return std::any_of(controller.reads.begin(), controller.reads.end(), [&](const ReadingSpec& reading) {
+          return reading.source.text == output.name.text;
+        });
+      });
 }
 
 void checkSampledNumbers(const ModelSpec& model, ModelNumbers& numbers) {
   for (const OutputSpec& output : model.outputs) {
     if (output.sensor) {
-      checkSensor(*output.sensor, "output '" + output.name.text + "'", numbers);
+      const std::string owner = "output '" + output.name.text + "'";
+      checkSensor(*output.sensor, owner, numbers);
+      if (isReadByControllers(output, model.system)) {  // a recorder's clock may be early
+        calcNonNegative(output.sensor->delay, {owner, "sensor.delay", "s"}, numbers);
+      }
     }
   }
   for (const ControllerSpec& controller : model.system.controllers) {

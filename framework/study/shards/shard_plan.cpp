@@ -61,7 +61,9 @@ ExperimentSurvey surveyForShards(const YamlNode& root, const ResultPlace& place)
   std::vector<SweepCase> cases = expandCasesWithSignals(root);
   followNoise(cases);
   limitAutomaticSamples(cases);
-  return surveyCases(std::move(cases), place);
+  ExperimentSurvey survey = surveyCases(std::move(cases), place);
+  measureTimes(survey);
+  return survey;
 }
 
 ShardPlan makeShardPlan(const ExperimentSurvey& survey, const ShardOptions& options) {

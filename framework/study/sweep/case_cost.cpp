@@ -47,20 +47,6 @@ double countSearched(const ExperimentSpec& experiment) {
              : double(samples) * countSearchedReplicates(Eigen::Index(samples) * replicates, replicates);
 }
 
-/// Numbers that a window of reduced samples becomes at most: scores and two sums.
-constexpr double kOfWindow = kMostScores + 2.0;
-
-double countRecordedRows(const ExperimentSpec& experiment) {
-  return static_cast<double>(collectTimes(experiment.features).size()) *
-             static_cast<double>(experiment.model.outputs.size()) +
-         2.0 * countModes(experiment.features) + 1.0;
-}
-
-double countRows(const ExperimentSpec& experiment) {
-  const double samples = countRecordedRows(experiment);
-  return isReduced(experiment) ? kOfWindow * countReducedWindows(samples) : samples;
-}
-
 /// Of reducing: the sketch and the directions, the points whose sensitivities are added at a time, and the
 /// responses of each thread with derivatives.
 double countReductionNumbers(const ExperimentSpec& experiment, int threads) {
@@ -118,12 +104,6 @@ double countFeatureNumbers(const ExperimentSpec& experiment) {
 
 double countSearches(const GpMapSpec& gp) {
   return gp.starts + (gp.length_scales == LengthScales::kShared ? 0.0 : std::min(gp.starts, 2));
-}
-
-/// Windows of a surrogate's features, at least.
-double countWindows(const ExperimentSpec& experiment) {
-  constexpr double kRowsPerWindow = 16.0, kMost = 64.0;
-  return std::min(kMost, std::ceil(countRows(experiment) / kRowsPerWindow));
 }
 
 double square(double x) {
@@ -214,6 +194,23 @@ double countNetworkFlops(const NetworkMapSpec& network, int simulations) {
 }
 
 }  // namespace
+
+double countRecordedRows(const ExperimentSpec& experiment) {
+  return static_cast<double>(collectTimes(experiment.features).size()) *
+             static_cast<double>(experiment.model.outputs.size()) +
+         2.0 * countModes(experiment.features) + 1.0;
+}
+
+double countRows(const ExperimentSpec& experiment, double scores) {
+  constexpr double kSums = 2.0;
+  const double samples = countRecordedRows(experiment);
+  return isReduced(experiment) ? (scores + kSums) * countReducedWindows(samples) : samples;
+}
+
+double countWindows(const ExperimentSpec& experiment) {
+  constexpr double kRowsPerWindow = 16.0, kMost = 64.0;
+  return std::min(kMost, std::ceil(countRows(experiment) / kRowsPerWindow));
+}
 
 std::vector<TrainingStep> listTrainingSteps(const ExperimentSpec& experiment) {
   if (experiment.inverse_map.findGp() == nullptr) {

@@ -2,11 +2,19 @@
 
 #include <vector>
 
+#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap {
 
 inline constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;  ///< bytes
+
+/// Numbers of a simulated response, with the modes of one.
+double countRecordedRows(const ExperimentSpec& experiment);
+/// The same of what a run keeps of it: where samples are reduced, so many scores a window and two sums.
+double countRows(const ExperimentSpec& experiment, double scores = double(kMostScores));
+/// Windows of a surrogate's features, at least.
+double countWindows(const ExperimentSpec& experiment);
 
 /// Searches for hyperparameters that follow one another in the training of a map.
 struct TrainingStep {

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double kNumber = 8.0;                      // bytes
+constexpr double kNumber = 8.0, kSingle = 4.0;       // bytes
 constexpr double kProgram = 40.0 * 1024.0 * 1024.0;  // bytes of a process without data
 constexpr double kReport = 1.5 * 1024.0 * 1024.0;    // bytes of report, figures and texts of a case
 constexpr double kPredictionRow = 90.0;              // bytes of a line of predictions.csv
@@ -41,19 +41,22 @@ double countParameters(const ExperimentSpec& e) {
   return static_cast<double>(e.model.parameters.size());
 }
 
-double countStoredRows(const ExperimentSpec& e) {
-  return static_cast<double>(collectTimes(e.features).size()) * static_cast<double>(e.model.outputs.size()) +
-         2.0 * countModes(e.features);
-}
-
-/// samples.h5, the factors in maps.h5, and the tables.
-double calcCaseDisk(const ExperimentSpec& e) {
-  const GpMapSpec* gp = e.inverse_map.findGp();  // a surrogate is not stored
+/// samples.h5, what is in maps.h5, and the tables. scores: of a window of reduced samples.
+double calcCaseDisk(const ExperimentSpec& e, double scores) {
+  const GpMapSpec* gp = e.inverse_map.findGp();  // a surrogate is small
   const bool sparse = gp != nullptr && gp->approximation == GpApproximation::kSgpr;
   const double order = gp == nullptr ? 0.0 : (sparse ? 1.5 * gp->inducing : countTrainingColumns(e));
-  return kNumber * (countStoredRows(e) + double(countSampled(e.model))) * countSamples(e) +
-         kNumber * countParameters(e) * order * order +
+  const double directions = isReduced(e) ? kSingle * scores * countRecordedRows(e) : 0.0;
+  return kNumber * (countRows(e, scores) + double(countSampled(e.model))) * countSamples(e) +
+         kNumber * countParameters(e) * order * order + directions +
          kPredictionRow * countParameters(e) * e.design.test.samples + kReport;
+}
+
+/// What the simulated samples take: of reduced ones what is kept.
+double calcStoreDisk(const ExperimentSurvey& survey, double scores) {
+  const ExperimentSpec& e = survey.cases.front().experiment;
+  const double kept = isReduced(e) ? countRows(e, scores) / countRecordedRows(e) : 1.0;  // never of a sweep
+  return kept * (survey.stored.samples.bytes + survey.stored.stencils.bytes);
 }
 
 /// What a case takes after its samples are simulated, in the order of a run.
@@ -261,11 +264,15 @@ ExperimentSurvey surveyCases(std::vector<SweepCase> cases, const ResultPlace& pl
   survey.folder = place.folder;
   survey.complete = findCompleteCases(survey.cases, place.folder);
   survey.stored = countStored(survey.cases, survey.complete, getStoreRoot(place.folder, place.store));
+  survey.times.failure = "not measured";
+  return survey;
+}
+
+void measureTimes(ExperimentSurvey& survey) {
   if (std::count(survey.complete.begin(), survey.complete.end(), false) > 0) {
     const ExperimentSpec& largest = findLargest(survey.cases);
     survey.times = measureProbe(largest, countTrainingColumns(largest));
   }
-  return survey;
 }
 
 SweepPlan planRun(const ExperimentSurvey& survey, const PlanOptions& options) {
@@ -279,9 +286,10 @@ SweepPlan planRun(const ExperimentSurvey& survey, const PlanOptions& options) {
   if (plan.complete == plan.cases) {
     return plan;
   }
-  plan.disk = plan.stored.samples.bytes + plan.stored.stencils.bytes;
+  const double scores = survey.times.scores > 0.0 ? survey.times.scores : double(kMostScores);
+  plan.disk = calcStoreDisk(survey, scores);
   for (std::size_t i = 0; i < survey.cases.size(); ++i) {
-    plan.disk += todo[i] ? calcCaseDisk(survey.cases[i].experiment) : 0.0;
+    plan.disk += todo[i] ? calcCaseDisk(survey.cases[i].experiment, scores) : 0.0;
   }
   plan.memory = calcMemory(survey.cases, todo, options, plan.stored);
   addTimes(survey, options, plan);

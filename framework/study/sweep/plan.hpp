@@ -26,10 +26,13 @@ struct ExperimentSurvey {
   ProbeTimes times;  ///< of the case with the most work; none where all are complete
 };
 
-/// Looks at the cases of an experiment (expandCasesWithSignals). Simulates and trains a little in a temporary
-/// folder (measureProbe) to find the times; writes nothing else. Cost (bench/scale.py): the probe, 2 s on the
-/// two beams, and some us a sample; 30 kB a case and 200 bytes a sample of memory.
+/// Looks at the cases of an experiment (expandCasesWithSignals), without times. Writes nothing. Cost
+/// (bench/scale.py): some us a sample; 30 kB a case and 200 bytes a sample of memory.
 ExperimentSurvey surveyCases(std::vector<SweepCase> cases, const ResultPlace& place);
+
+/// Simulates and trains a little in a temporary folder (measureProbe) to find the times. Cost: 2 s on the two
+/// beams, 10 s on ten outputs of 100000 samples.
+void measureTimes(ExperimentSurvey& survey);
 
 struct PlanOptions {
   int threads = 1;

@@ -10,6 +10,7 @@
 #include "framework/study/pipeline/training/fit_online.hpp"
 #include "framework/study/samples/stencils.hpp"
 #include "framework/study/sweep/case_cost.hpp"
+#include "framework/study/sweep/thinned.hpp"
 
 namespace twinmap {
 namespace {
@@ -213,6 +214,22 @@ ProbeTimes takeTimes(const ProbedRun& sample, double simulated) {
   return times;
 }
 
+/// From times of thinned samples.
+void multiply(const ThinnedExperiment& thinned, ProbeTimes& times) {
+  times.simulation *= thinned.simulation;
+  times.stencil *= thinned.simulation;
+  times.limit *= thinned.simulation;
+  times.refinement *= thinned.simulation;
+  times.preparation *= thinned.rows;
+  times.evaluation *= thinned.rows;
+  times.overhead =
+      thinned.rows * std::max(times.overhead - thinned.probed_reduction, 0.0) + thinned.reduction;
+  for (EvaluationTime& time : times.training.measured) {
+    time.seconds *= thinned.windows;
+  }
+  times.scores = thinned.scores;
+}
+
 ProbeTimes measure(const ExperimentSpec& experiment, double most_samples) {
   const TemporaryFolder folder;
   const ExperimentSpec small = makeSmall(experiment);
@@ -237,7 +254,10 @@ double ProbeTimes::calcPreparation(const ExperimentSpec& experiment) const {
 
 ProbeTimes measureProbe(const ExperimentSpec& experiment, double most_samples) {
   try {
-    return measure(experiment, most_samples);
+    const ThinnedExperiment thinned = thinSamples(experiment);
+    ProbeTimes times = measure(thinned.experiment, most_samples);
+    multiply(thinned, times);
+    return times;
   } catch (const std::exception& error) {
     ProbeTimes times;
     times.failure = error.what();

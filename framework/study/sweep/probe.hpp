@@ -17,6 +17,7 @@ struct ProbeTimes {
   double refinement = 0.0;   ///< s, of one test sample
   double evaluation = 0.0;   ///< s, of one test sample: its inference by the map, and its part of tables
   double overhead = 0.0;     ///< s, everything else: files, report, other evaluations
+  double scores = 0.0;       ///< of a window of reduced samples, if they are
   std::string failure;       ///< why there are no times; empty if there are
 
   /// Preparing for measurements: a prediction per reference, which an exact process makes from all samples.
@@ -27,7 +28,7 @@ struct ProbeTimes {
 /// samples; all stages with up to 200 training samples, for their times; the map with 400 to 2000 test
 /// samples, where there are more and they are cheap, for what grows with them; then with more noise draws and
 /// few evaluations, to see how an evaluation of the marginal likelihood grows with the samples, up to
-/// `most_samples` or 1000.
+/// `most_samples` or 1000. Of a long record a few of the samples (thinSamples), whose times are multiplied.
 ProbeTimes measureProbe(const ExperimentSpec& experiment, double most_samples);
 
 }  // namespace twinmap

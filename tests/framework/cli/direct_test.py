@@ -179,6 +179,13 @@ class Direct(FolderTestCase):
         self.assertGreater(max(ratios), 1.2)
         self.assertIn("noise_coloured: the noise of x is coloured", self.infer(CART, noisy))
 
+    def test_coloured_noise_is_not_taken_for_an_offset(self):
+        coloured = "noise.correlation={x: {autoregression: [0.5]}}"
+        noisy = self.simulate(CART, "wandering.csv", coloured, "seed=106", *POINT)
+        found = json.loads(self.infer(CART, noisy, "--json"))
+        self.assertEqual(found["statuses"], ["noise_coloured"])
+        self.expect_true(found)
+
     def test_an_offset_of_a_sensor_is_found(self):
         found = json.loads(self.infer(CART, self.change("offset.csv", lambda i, x: x + 5e-4), "--json"))
         self.assertEqual(found["statuses"], ["sensor_offset"])

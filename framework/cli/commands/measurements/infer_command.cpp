@@ -128,7 +128,7 @@ class InferCommand {
         inferred.run = run_;
         std::optional<RecordedFeatures> recording;
         if (names_missing_ && source_.getReader().findReduction() == nullptr && inferred.fault.empty() &&
-            isMismatch(selectEstimate(inferred).statuses)) {
+            (isMismatch(selectEstimate(inferred).statuses) || !inferred.clock_faults.empty())) {
           waiting.describe("looking for what the model lacks, " + table.source);
           recording = readRecording(source_.getReader(), table, start, known_);
           inferred.missing = findMissingTerm(source_.getExperiment(), *recording, inferred);

@@ -67,18 +67,21 @@ class Candidates {
       listed.back().has_outliers = true;
     }
     const NoiseHypothesis offsets = supposeOffsets(sizes);
-    if (const std::vector<int> kept = findOffsets(offsets); !kept.empty()) {
+    const bool coloured = settle(stated_).whiteness_p < kMismatchLevel;
+    // coloured noise has a mean that looks like an offset where it is taken for white
+    const NoiseHypothesis both = coloured ? supposeColours(offsets) : offsets;
+    const std::vector<int> kept = findOffsets(both);
+    if (!kept.empty()) {
       add(keepOffsets(supposeOffsets(stated_), kept));
       add(keepOffsets(offsets, kept));
     }
-    if (settle(stated_).whiteness_p < kMismatchLevel) {
-      const NoiseHypothesis colours = supposeColours(sizes), both = supposeColours(offsets);
-      if (hasColours(colours)) {
+    if (coloured) {
+      if (const NoiseHypothesis colours = supposeColours(sizes); hasColours(colours)) {
         add(colours);
       }
-      if (const std::vector<int> kept = findOffsets(both); hasColours(both) && !kept.empty()) {
-        add(keepOffsets(both, kept));
-      }
+    }
+    if (hasColours(both) && !kept.empty()) {
+      add(keepOffsets(both, kept));
     }
     return listed;
   }

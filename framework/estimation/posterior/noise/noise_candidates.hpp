@@ -20,7 +20,8 @@ struct LinearFit {
 /// first: a few samples that are not noise; sizes other than stated; both; sensors with an offset; colours
 /// (fitColours), of any size, where neighbours agree too much; and these with an offset. Each without
 /// outliers is tried on the linear model and left out where it explains the residual no better; offsets are
-/// supposed of those outputs alone that have one of more than 3.3 standard deviations there.
+/// supposed of those outputs alone that have one of more than 3.3 standard deviations there, under the
+/// colours where there are any.
 std::vector<NoiseHypothesis> listNoiseHypotheses(const NoiseHypothesis& stated, const LinearFit& fit);
 
 /// `stated` with a guess in the place of sizes that are not known, from the second differences of the

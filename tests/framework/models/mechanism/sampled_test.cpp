@@ -149,6 +149,23 @@ TEST(Sensor, HasExactDerivativesWithRespectToItsTimesToo) {
   EXPECT_LT(compareDerivatives(makeSensedCart()), 1e-5);
 }
 
+TEST(Sensor, OfARecorderWhoseClockIsEarlyShowsWhatComes) {
+  ModelSpec model = makeWatcher({sensor("", "", "-0.1")});
+  EXPECT_THROW(MultibodySimulator(model, kSampledTimes), ExperimentError);  // behind the end
+  model.simulation.duration = 2.1;
+  const MatrixXd y = runModel(model, kSampledTimes);
+  for (Eigen::Index i = 0; i < kSampledTimes.size(); ++i) {
+    EXPECT_NEAR(y(i, 0), 3.0 * std::sin(3.0 * kHalfTurn * (kSampledTimes[i] + 0.1)), 6e-6);
+  }
+}
+
+TEST(Sensor, WhoseDelayMayHaveEitherSignHasExactDerivatives) {
+  ModelSpec model = makeSensedCart();
+  model.parameters[3].bounds = {-0.2, 0.1, {}};
+  model.simulation.duration = 2.2;
+  EXPECT_LT(compareDerivatives(model), 1e-5);
+}
+
 TEST(Sensor, ClipsWithoutADerivativeBeyondItsRange) {
   ModelSpec model = makeSensedCart();
   const MatrixXd free = runModel(model, kSampledTimes, calcBoxCenter(collectSampled(model)));
@@ -216,6 +233,11 @@ ModelSpec makeSampledMotor(double sample_time, const std::string& delay, const S
   model.outputs = {coordinateOutput("angle"), sensedOutput("current", "i", {}),
                    sensedOutput("voltage", "u", {}), sensedOutput("encoder", "angle", encoder)};
   return model;
+}
+
+TEST(Sensor, ThatAControllerReadsIsNeverEarly) {
+  const ModelSpec model = makeSampledMotor(0.02, "0.005", sensor("", "", "-1e-3"));
+  EXPECT_THROW(MultibodySimulator(model, kSampledTimes), ExperimentError);
 }
 
 template <std::size_t N>

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/lanes/recording/delay_reach.hpp"
 #include "framework/models/mechanism/varying_expressions.hpp"
-#include "framework/simulation/model_numbers.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 
 namespace twinmap {
@@ -34,29 +33,6 @@ std::size_t findOutput(const ModelSpec& model, const std::string& name) {
   const auto found = std::find_if(model.outputs.begin(), model.outputs.end(),
                                   [&](const OutputSpec& output) { return output.name.text == name; });
   return static_cast<std::size_t>(found - model.outputs.begin());
-}
-
-/// The largest value at the centre, at both ends and where one parameter alone is at an end of its bounds.
-double calcLargest(const ModelSpec& model, const Expression& expression, const std::string& owner) {
-  const std::vector<ParameterSpec> sampled = collectSampled(model);
-  const Eigen::VectorXd center = calcBoxCenter(sampled), lower = calcLowerBounds(sampled),
-                        upper = lower + calcWidths(sampled);
-  ModelNumbers numbers(model);
-  double largest = 0.0;
-  const auto look = [&](const Eigen::VectorXd& point) {
-    numbers.update(point);
-    largest = std::max(largest, numbers.calc(expression, {owner, "delay", "s"}));
-  };
-  look(lower);
-  look(upper);
-  for (Eigen::Index i = 0; i < center.size(); ++i) {
-    for (const double end : {lower[i], upper[i]}) {
-      Eigen::VectorXd point = center;
-      point[i] = end;
-      look(point);
-    }
-  }
-  return largest;
 }
 
 }  // namespace
@@ -100,13 +76,13 @@ int ControllerRecorder::countSlots() const {
 double ControllerRecorder::calcLongestDelay() const {
   const ModelSpec& model = sampled_.model;
   const std::string owner = "controller '" + spec_.name.text + "'";
-  double longest = calcLargest(model, spec_.delay, owner);
+  double longest = calcReach(model, spec_.delay, owner).upper;
   for (const ReadingSpec& reading : spec_.reads) {
     const std::size_t output = findOutput(model, reading.source.text);
     if (output < model.outputs.size() && looksBack(output)) {
       const SensorSpec& sensor = *model.outputs[output].sensor;
-      const double delay = sensor.delay.text.empty() ? 0.0 : calcLargest(model, sensor.delay, owner);
-      const double window = sensor.average.text.empty() ? 0.0 : calcLargest(model, sensor.average, owner);
+      const double delay = sensor.delay.text.empty() ? 0.0 : calcReach(model, sensor.delay, owner).upper;
+      const double window = sensor.average.text.empty() ? 0.0 : calcReach(model, sensor.average, owner).upper;
       longest = std::max(longest, delay + window);
     }
   }
