@@ -12,6 +12,7 @@
 #include "framework/data/reduction/response_reduction.hpp"
 #include "framework/data/sensitivity/fit_reduction.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/study/sweep/case_cost.hpp"
 
@@ -29,24 +30,28 @@ std::unique_ptr<Simulator> makeWhole(const ExperimentSpec& experiment) {
 }
 
 ExperimentSpec takeEvery(ExperimentSpec experiment, int step) {
-  for (FeatureSpec& feature : experiment.features) {
-    if (auto* samples = std::get_if<SamplesFeatureSpec>(&feature)) {
-      samples->interval *= step;
-      samples->count = (samples->count + step - 1) / step;
+  changeTrials(experiment, [&](ExperimentSpec& one) {
+    for (FeatureSpec& feature : one.features) {
+      if (auto* samples = std::get_if<SamplesFeatureSpec>(&feature)) {
+        samples->interval *= step;
+        samples->count = (samples->count + step - 1) / step;
+      }
     }
-  }
+  });
   return experiment;
 }
 
 /// The first part of the record, with as many samples closer together, and as much time behind the last.
 ExperimentSpec takeFirst(ExperimentSpec experiment, double part) {
-  const Eigen::VectorXd times = collectTimes(experiment.features);
-  for (FeatureSpec& feature : experiment.features) {
-    auto& samples = std::get<SamplesFeatureSpec>(feature);
-    samples.start *= part;
-    samples.interval *= part;
-  }
-  experiment.model.simulation.duration -= (1.0 - part) * times[times.size() - 1];
+  changeTrials(experiment, [&](ExperimentSpec& one) {
+    const Eigen::VectorXd times = collectTimes(one.features);
+    for (FeatureSpec& feature : one.features) {
+      auto& samples = std::get<SamplesFeatureSpec>(feature);
+      samples.start *= part;
+      samples.interval *= part;
+    }
+    one.model.simulation.duration -= (1.0 - part) * times[times.size() - 1];
+  });
   return experiment;
 }
 
