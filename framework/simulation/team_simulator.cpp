@@ -17,26 +17,31 @@ using Parameters = Eigen::Ref<const MatrixXd>;
 /// Threads that wait for work keep their cores busy for some milliseconds: they are for what takes longer
 /// (s).
 constexpr double kWorthwhile = 0.02;
-/// Fewer columns leave half of the lanes empty and take as long.
-constexpr Index kLeastShare = 8;
+/// Fewer columns leave half of the lanes empty and take as long; with derivatives fewer run side by side.
+constexpr Index kLeastShare = 8, kLeastWithDerivatives = 4;
 /// More shares than threads, for threads that are slowed down by others; but few, since lanes run empty at
 /// the end of each.
 constexpr Index kMostShare = 64;
 
 /// Columns of a share: as many shares for each of the threads.
-Index calcShare(Index columns, Index threads) {
+Index calcShare(Index columns, Index threads, Index least) {
   const Index rounds = (columns + kMostShare * threads - 1) / (kMostShare * threads);
   const Index shares = rounds * threads;
-  return std::max(kLeastShare, (columns + shares - 1) / shares);
+  return std::max(least, (columns + shares - 1) / shares);
 }
 
 }  // namespace
+
+TeamSimulator::TeamSimulator(std::unique_ptr<Simulator> own)
+    : cost_{kLeastShare}, cost_with_derivatives_{kLeastWithDerivatives} {
+  team_.push_back(std::move(own));
+}
 
 int TeamSimulator::makeTeam(Index columns, const Cost& cost) {
   if (cost.seconds * static_cast<double>(columns) < kWorthwhile) {
     return 1;
   }
-  const Index most = std::max<Index>(1, columns / kLeastShare);
+  const Index most = (columns + cost.least - 1) / cost.least;
   const int threads = static_cast<int>(std::min<Index>(countThreads(), most));
   while (static_cast<int>(team_.size()) < threads) {
     team_.push_back(getOwn().clone());
@@ -53,7 +58,7 @@ void TeamSimulator::run(Index columns, Cost& cost, const Part& part) {
   if (threads == 1) {
     part(updOwn(), 0, columns);
   } else {
-    const Index share = calcShare(columns, threads);
+    const Index share = calcShare(columns, threads, cost.least);
     runOnTeam(team_, static_cast<int>((columns + share - 1) / share), threads,
               [&](Simulator& simulator, int i) {
                 part(simulator, i * share, std::min(share, columns - i * share));

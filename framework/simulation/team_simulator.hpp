@@ -11,7 +11,7 @@ namespace twinmap {
 /// batch.
 class TeamSimulator final : public Simulator {
  public:
-  explicit TeamSimulator(std::unique_ptr<Simulator> own) { team_.push_back(std::move(own)); }
+  explicit TeamSimulator(std::unique_ptr<Simulator> own);
 
   const ResponseLayout& getLayout() const override { return getOwn().getLayout(); }
   void simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters, Eigen::Ref<Eigen::MatrixXd> responses,
@@ -38,8 +38,9 @@ class TeamSimulator final : public Simulator {
  private:
   const Simulator& getOwn() const { return *team_.front(); }
   Simulator& updOwn() { return *team_.front(); }
-  /// How long a column takes one thread, s; 0: not yet known.
+  /// How long a column takes one thread, s; 0: not yet known. least: columns that are worth a thread.
   struct Cost {
+    Eigen::Index least;
     double seconds = 0.0;
   };
   /// Simulates columns first ... first + count - 1.

@@ -240,7 +240,8 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
 BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,
                        const BasinSearchOptions& options) {
   const int most = options.starts * options.max_batches + options.probes;
-  BasinHunt hunt(surface, makeStarts(surface.getDimensions(), seed, most), options);
+  const MatrixXd starts = makeStarts(surface.getDimensions(), seed, most);
+  BasinHunt hunt(surface, options.from_prior ? surface.spreadAsPrior(starts) : starts, options);
   MatrixXd scouts(surface.getDimensions(), options.scouts + given.cols());
   scouts << hunt.takeStarts(options.scouts), given;
   hunt.search(scouts);
@@ -256,12 +257,12 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
   }
   MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
   for (int batch = 0; batch < options.max_batches; ++batch) {
-    const MatrixXd starts =
+    const MatrixXd next =
         hunt.takeStarts(again.cols() > 0 ? options.starts - options.scouts : options.starts);
-    hunt.search(starts);
+    hunt.search(next);
     if (!hunt.isExplained() && surface.countWindows() > 1) {
-      MatrixXd all(starts.rows(), starts.cols() + again.cols());
-      all << starts, again;
+      MatrixXd all(next.rows(), next.cols() + again.cols());
+      all << next, again;
       hunt.searchWindows(all);
     }
     again.resize(Eigen::NoChange, 0);

@@ -50,6 +50,9 @@ struct BasinSearchOptions {
   int confirmations = 3;
   int max_batches = 4;
   int max_iterations = 25;
+  /// Whether starts are spread as the prior is, not all over the bounds: of many parameters hardly any start
+  /// is near enough else.
+  bool from_prior = false;
 };
 
 /// The minima of a surface that may bear some of the posterior: chi-square at most 25 above the best.

@@ -130,6 +130,15 @@ void MisfitSurface::addPrior(LocalSurface& surface) const {
   surface.descent += prior.descent;
 }
 
+MatrixXd MisfitSurface::spreadAsPrior(const MatrixXd& points) const {
+  MatrixXd spread(points.rows(), points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    const VectorXd unit = 0.5 * (points.col(i).array() + 1.0);
+    spread.col(i) = coordinates_.fromParameters(prior_.calcPoint(unit)).cwiseMax(-1.0).cwiseMin(1.0);
+  }
+  return spread;
+}
+
 PriorMisfit MisfitSurface::linearizePrior(const VectorXd& at) const {
   PriorMisfit prior = prior_.calcMisfit(coordinates_.toParameters(at));
   const VectorXd slopes = coordinates_.calcSlopes(at).cwiseProduct(coordinates_.getHalfWidths());

@@ -68,6 +68,8 @@ class MisfitSurface {
   Eigen::VectorXd calcLogPosteriors(const Eigen::MatrixXd& points);
   /// The prior's misfit and its linear model at a point, in these coordinates.
   PriorMisfit linearizePrior(const Eigen::VectorXd& at) const;
+  /// Points of [-1, 1]^u (u x n) as uniform numbers from which those of the prior follow.
+  Eigen::MatrixXd spreadAsPrior(const Eigen::MatrixXd& points) const;
   /// log of the prior's density in these coordinates, but for a summand.
   double calcLogPrior(const Eigen::VectorXd& point) const {
     return coordinates_.calcLogUniform(point) + prior_.calcLogDensity(coordinates_.toParameters(point));

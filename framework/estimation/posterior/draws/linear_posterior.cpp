@@ -143,6 +143,7 @@ bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins)
 BasinSearchOptions limitSearch(BasinSearchOptions options, Index drawn) {
   constexpr int kScouts = 3, kStarts = 8, kConfirmations = 2;
   if (drawn > kManyUnknown) {
+    options.from_prior = true;
     options.scouts = std::min(options.scouts, kScouts);
     options.probes = std::min(options.probes, kScouts);
     options.starts = std::min(options.starts, kStarts);

@@ -39,7 +39,8 @@ double calcNonlinearity(MisfitSurface& surface, const Basin& basin, std::uint64_
 bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins);
 
 /// Few searches where more than kManyUnknown parameters are drawn: no number of them covers the bounds, each
-/// takes a simulation with as many derivatives a step, and a machine of many parameters has priors.
+/// takes a simulation with as many derivatives a step, and a machine of many parameters has priors, as which
+/// they are spread.
 BasinSearchOptions limitSearch(BasinSearchOptions options, Eigen::Index drawn);
 
 /// Points to search from (u x n, or none at all), with the prior's median where more than kManyUnknown of the

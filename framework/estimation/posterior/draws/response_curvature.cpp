@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kStep = 0.5;        // standard deviations: what bends within the posterior, not at a point
+constexpr double kAxisStep = 0.5;    // standard deviations: what bends within the posterior, not at a point
 constexpr double kLeastRoom = 0.05;  // of a standard deviation: a prior's bound, where it hardly goes
 /// Of the longest axis: two shorter ones bend by a hundredth of what it does, and what one bends with a
 /// longer one is seen along that.
@@ -23,7 +23,7 @@ constexpr double kShortest = 0.1;
 /// How far (in standard deviations, signed) a point may go along each axis within the bounds; 0: not.
 VectorXd chooseSteps(const VectorXd& at, const MatrixXd& axes) {
   const auto findRoom = [&](const VectorXd& axis) {
-    double room = kStep;
+    double room = kAxisStep;
     for (Index i = 0; i < at.size(); ++i) {
       if (axis[i] != 0.0) {
         room = std::min(room, ((axis[i] > 0.0 ? 1.0 : -1.0) - at[i]) / axis[i]);
