@@ -6,10 +6,15 @@
 #include <vector>
 
 #include "framework/analysis/course.hpp"
-#include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/experiment/model/parameter_spec.hpp"
 
 namespace twinmap {
+
+/// The profile likelihood of a parameter at its values: the log of the posterior density over the largest.
+struct HistoryProfile {
+  std::size_t parameter = 0;
+  Eigen::VectorXd values, log_ratios;
+};
 
 /// What one measurement says of the parameters.
 struct HistoryPoint {
@@ -18,7 +23,7 @@ struct HistoryPoint {
   std::string status;  ///< "ok", "model_mismatch", ...
   bool counts = true;  ///< in the courses: false where a status says that the estimate misleads
   Eigen::VectorXd mean, stddev, lower95, upper95;
-  std::vector<Profile> profiles = {};  ///< where they were asked for
+  std::vector<HistoryProfile> profiles = {};  ///< where they were asked for
 };
 
 /// Estimates of one machine in the order of their measurements.

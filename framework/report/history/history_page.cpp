@@ -71,19 +71,18 @@ Panel makeHistoryPanel(const History& history, std::size_t p, bool has_course) {
   return panel;
 }
 
-/// A row for each value of each profile of a parameter; its nuisance parameters have none.
+/// A row for each value of each profile.
 DataTable makeProfilesTable(const History& history) {
   std::vector<std::string> parameters, measurements;
   std::vector<double> values, ratios;
   const std::vector<double> places = listPlaces(history);
   for (std::size_t k = 0; k < history.points.size(); ++k) {
     const HistoryPoint& point = history.points[k];
-    for (const Profile& profile : point.profiles) {
-      const auto p = static_cast<std::size_t>(profile.parameter);
-      for (Index i = 0; p < history.parameters.size() && i < profile.log_ratios.size(); ++i) {
-        parameters.push_back(history.parameters[p].name.text);
+    for (const HistoryProfile& profile : point.profiles) {
+      for (Index i = 0; i < profile.log_ratios.size(); ++i) {
+        parameters.push_back(history.parameters[profile.parameter].name.text);
         measurements.push_back(point.source + (isOneFile(history) ? " at " + toText(places[k]) + " s" : ""));
-        values.push_back(profile.points(profile.parameter, i));
+        values.push_back(profile.values[i]);
         ratios.push_back(profile.log_ratios[i]);
       }
     }

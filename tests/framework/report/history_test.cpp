@@ -70,13 +70,10 @@ TEST(History, PageSaysTheCourseFirst) {
 TEST(History, PageDrawsProfilesWhereTheyWereAskedFor) {
   History history = makeHistory(0.0);
   EXPECT_EQ(makeHistoryPage("cart", history, {}).find("Profile likelihoods"), std::string::npos);
-  Profile of_k{0, Eigen::MatrixXd::Constant(2, 3, 7.5), Eigen::VectorXd::Constant(3, -1.25)};
-  Profile of_nuisance{1, of_k.points, Eigen::VectorXd::Constant(3, -77.5)};
-  history.points[4].profiles = {of_k, of_nuisance};
+  history.points[4].profiles = {{0, Eigen::VectorXd::Constant(3, 7.5), Eigen::VectorXd::Constant(3, -1.25)}};
   const std::string page = makeHistoryPage("cart", history, {});
   EXPECT_NE(page.find("Profile likelihoods"), std::string::npos);
   EXPECT_NE(page.find("-1.25"), std::string::npos);
-  EXPECT_EQ(page.find("-77.5"), std::string::npos);
 }
 
 }  // namespace

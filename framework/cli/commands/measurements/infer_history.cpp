@@ -26,8 +26,12 @@ void InferHistory::add(const InferredMeasurement& inferred) {
   history_.points.push_back({inferred.source, inferred.start, joinStatuses(estimate.statuses, ", "),
                              std::none_of(estimate.statuses.begin(), estimate.statuses.end(), misleads),
                              estimate.mean, estimate.stddev, bounds.lower, bounds.upper});
-  if (inferred.posterior) {
-    history_.points.back().profiles = inferred.posterior->profiles;
+  for (const Profile& profile : inferred.posterior ? inferred.posterior->profiles : std::vector<Profile>{}) {
+    const auto parameter = static_cast<std::size_t>(profile.parameter);
+    if (parameter < history_.parameters.size()) {  // a nuisance parameter has no place on the page
+      history_.points.back().profiles.push_back(
+          {parameter, profile.points.row(profile.parameter), profile.log_ratios});
+    }
   }
 }
 
