@@ -1,6 +1,5 @@
 #include "framework/cli/commands/measurements/infer_options.hpp"
 
-
 namespace twinmap::cli {
 
 SessionOptions makeSessionOptions(const InferArguments& arguments) {
