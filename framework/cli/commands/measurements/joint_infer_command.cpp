@@ -64,11 +64,6 @@ void requireJointArguments(const InferArguments& arguments) {
     throw ExperimentError(
         "--follow infers one measurement after another; leave --joint, --trial and --windows out");
   }
-  if (arguments.refine) {
-    throw ExperimentError(
-        "several recordings are inferred by simulation alone: there is nothing to refine; leave --refine and "
-        "--no-refine out");
-  }
   if (!arguments.page.empty()) {
     throw ExperimentError(
         "--page draws estimates of one measurement after another; leave --joint, --trial and --windows out");
@@ -151,10 +146,15 @@ bool inferByRun(const InferArguments& arguments) {
 }  // namespace
 
 void inferJointly(const InferArguments& arguments) {
+  requireJointArguments(arguments);
   if (inferByRun(arguments)) {
     return;
   }
-  requireJointArguments(arguments);
+  if (arguments.refine) {
+    throw ExperimentError(
+        "several recordings are inferred by simulation alone: there is nothing to refine; leave --refine and "
+        "--no-refine out");
+  }
   const int draws =
       arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
   const JointInferrer inferrer(loadExperimentTree(findExperimentFile(arguments.run)), arguments.known, draws);
