@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
@@ -121,11 +122,15 @@ TEST(TeamSimulator, AsksThreadsOnlyForWhatTakesLong) {
   const Threads offered(2);
   for (const int delay_ms : {0, 4}) {
     Products::delay_ms = delay_ms;
-    TeamSimulator team(std::make_unique<Products>());
-    simulate(team, makePoints(64));
-    Products::calls = 0;
-    simulate(team, makePoints(64));
-    EXPECT_EQ(Products::calls > 2, delay_ms > 0);
+    int fewest = 1000;
+    for (int attempt = 0; attempt < 5; ++attempt) {  // a busy machine makes a short one long now and then
+      TeamSimulator team(std::make_unique<Products>());
+      simulate(team, makePoints(64));
+      Products::calls = 0;
+      simulate(team, makePoints(64));
+      fewest = std::min<int>(fewest, Products::calls);
+    }
+    EXPECT_EQ(fewest > 2, delay_ms > 0);
   }
 }
 
