@@ -37,15 +37,9 @@ ExperimentSpec readPlain(const YamlNode& tree) {
   return experiment;
 }
 
-std::string writeTransform(const ExperimentSpec& experiment) {
-  const YamlNode tree = writeValue(experiment);
-  const YamlNode* transform = tree.find("transform");
-  return transform != nullptr ? writeYaml(*transform) : "";
-}
-
 /// The features of all trials go through one transform.
 void requireSameTransform(const ExperimentSpec& base, const ExperimentSpec& trial, const std::string& name) {
-  if (writeTransform(base) != writeTransform(trial)) {
+  if (writeYaml(writeValue(base.transform)) != writeYaml(writeValue(trial.transform))) {
     throw ExperimentError(trial.name.where, name,
                           "has a transform of its own, but the features of all trials go through one; give "
                           "it beside 'trials', or choose one trial");

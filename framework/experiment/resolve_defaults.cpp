@@ -1,8 +1,9 @@
 #include "framework/experiment/resolve_defaults.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "framework/experiment/expression/curve.hpp"
@@ -39,37 +40,45 @@ void resolveCurves(ModelSpec& model) {
   }
 }
 
+/// Texts of products that add up to entry i, j of S S', S the upper triangle of spreads and skews.
+std::vector<std::string> listSecondMoment(const InertiaSpec& inertia, std::size_t i, std::size_t j) {
+  const Expression zero;
+  const Expression3 &spread = *inertia.spread, skew = inertia.skew.value_or(Expression3{});
+  const std::array<Expression3, 3> s{
+      {{spread[0], skew[0], skew[1]}, {zero, spread[1], skew[2]}, {zero, zero, spread[2]}}};
+  std::vector<std::string> terms;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    if (s[i][k].text != zero.text && s[j][k].text != zero.text) {
+      terms.push_back(fmt::format("({})*({})", s[i][k].text, s[j][k].text));
+    }
+  }
+  return terms;
+}
+
 /// The tensor of a body whose mass is spread so: I = tr(C) 1 - C with C = m S S'.
 void resolveInertia(BodySpec& body) {
-  if (!body.inertia.spread) {
+  const InertiaSpec spread = body.inertia;
+  if (!spread.spread) {
     return;
   }
-  const Expression3 zero;
-  const Expression3 &spread = *body.inertia.spread, &skew = body.inertia.skew.value_or(zero);
-  const auto multiply = [](const Expression& a, const Expression& b) {
-    const bool is_zero = a.text == Expression{}.text || b.text == Expression{}.text;
-    return is_zero ? std::string() : fmt::format("({})*({})", a.text, b.text);
+  const auto write = [&](const char* sign, const std::vector<std::string>& terms) {
+    return Expression{terms.empty()
+                          ? Expression{}.text
+                          : fmt::format("{}({})*({})", sign, body.mass.text, fmt::join(terms, " + ")),
+                      (*spread.spread)[0].where};
   };
-  const auto sum = [&](const std::vector<std::string>& terms, const char* sign) {
-    std::string text;
-    for (const std::string& term : terms) {
-      text += term.empty() ? "" : (text.empty() ? "" : " + ") + term;
+  body.inertia = InertiaSpec{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t first = i == 0 ? 1 : 0, second = i == 2 ? 1 : 2;  // the other two, in order
+    std::vector<std::string> terms = listSecondMoment(spread, first, first);
+    for (std::string& term : listSecondMoment(spread, second, second)) {
+      terms.push_back(std::move(term));
     }
-    return Expression{text.empty() ? "0" : fmt::format("{}({})*({})", sign, body.mass.text, text),
-                      spread[0].where};
-  };
-  const std::vector<std::string> xx{multiply(spread[0], spread[0]), multiply(skew[0], skew[0]),
-                                    multiply(skew[1], skew[1])},
-      yy{multiply(spread[1], spread[1]), multiply(skew[2], skew[2])}, zz{multiply(spread[2], spread[2])};
-  const auto join = [](std::vector<std::string> a, const std::vector<std::string>& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-  };
-  InertiaSpec tensor;
-  tensor.moments = {sum(join(yy, zz), ""), sum(join(xx, zz), ""), sum(join(xx, yy), "")};
-  tensor.products = {sum({multiply(skew[0], spread[1]), multiply(skew[1], skew[2])}, "-"),
-                     sum({multiply(skew[1], spread[2])}, "-"), sum({multiply(skew[2], spread[2])}, "-")};
-  body.inertia = tensor;
+    body.inertia.moments[i] = write("", terms);
+  }
+  body.inertia.products = {write("-", listSecondMoment(spread, 0, 1)),
+                           write("-", listSecondMoment(spread, 0, 2)),
+                           write("-", listSecondMoment(spread, 1, 2))};
 }
 
 void resolveReport(const std::vector<ParameterSpec>& parameters, ReportSpec& report) {

@@ -25,16 +25,17 @@ const MeasurementReader& TrialReader::get(const std::string& trial) const {
   return found->reader;
 }
 
-std::optional<Eigen::VectorXd> TrialReader::read(const std::vector<Recording>& recordings) const {
+std::optional<Eigen::VectorXd> TrialReader::read(const std::vector<RecordedTable>& recordings,
+                                                 std::optional<double> start) const {
   std::vector<double> features;
   for (const Trial& trial : trials_) {
-    const auto is_of_trial = [&](const Recording& one) { return one.trial == trial.name; };
+    const auto is_of_trial = [&](const RecordedTable& one) { return one.trial == trial.name; };
     if (std::count_if(recordings.begin(), recordings.end(), is_of_trial) != 1) {
       return {};
     }
-    const Recording& recording = *std::find_if(recordings.begin(), recordings.end(), is_of_trial);
-    const AvailableFeatures found = trial.reader.readAvailableFeatures(*recording.table, recording.start);
-    if (!found.isComplete() || trial.reader.followTimes(*recording.table, recording.start)) {
+    const Table& table = std::find_if(recordings.begin(), recordings.end(), is_of_trial)->table;
+    const AvailableFeatures found = trial.reader.readAvailableFeatures(table, start);
+    if (!found.isComplete() || trial.reader.followTimes(table, start)) {
       return {};
     }
     features.insert(features.end(), found.features.begin(), found.features.end());

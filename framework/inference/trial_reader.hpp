@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/inference/joint_inference.hpp"
+#include "framework/inference/recording_list.hpp"
 
 namespace twinmap {
 
@@ -18,7 +18,9 @@ class TrialReader {
 
   /// The features (d) of all trials; none where a trial has no recording or several, or a recording lacks
   /// samples or states its noise. Throws MeasurementError where a recording cannot be used.
-  std::optional<Eigen::VectorXd> read(const std::vector<Recording>& recordings) const;
+  /// start: the time in each that is 0 of the model; none: as the trial says.
+  std::optional<Eigen::VectorXd> read(const std::vector<RecordedTable>& recordings,
+                                      std::optional<double> start = {}) const;
 
  private:
   struct Trial {

@@ -61,11 +61,7 @@ Eigen::VectorXd readTrials(const PythonMap& map, const std::vector<Recorded>& re
   for (const auto& [trial, name, columns] : recordings) {
     tables.push_back({trial, name, readOrMakeTable(name, columns, reader.get(trial).listColumns())});
   }
-  std::vector<twinmap::Recording> listed;
-  for (const RecordedTable& table : tables) {
-    listed.push_back({table.trial, table.trial, &table.table, {}});
-  }
-  const std::optional<Eigen::VectorXd> features = reader.read(listed);
+  const std::optional<Eigen::VectorXd> features = reader.read(tables);
   if (!features) {
     throw MeasurementError(
         "a map of several trials needs one whole recording of each; infer_together() takes others");

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
-#include <mutex>
 
 #include "framework/simulation/simulator_team.hpp"
 
@@ -78,29 +76,18 @@ void TeamSimulator::simulate(const Parameters& parameters, Eigen::Ref<MatrixXd> 
 
 void TeamSimulator::simulateWithDerivatives(const Parameters& parameters, Eigen::Ref<MatrixXd> responses,
                                             MatrixXd& derivatives, SampleStatus* statuses) {
-  std::map<Index, MatrixXd> parts;  // by the first column
-  std::mutex mutex;
-  run(parameters.cols(), cost_with_derivatives_, [&](Simulator& simulator, Index first, Index count) {
+  const Index all = parameters.cols(), sampled = parameters.rows();
+  derivatives.resize(responses.rows(), all * sampled);
+  run(all, cost_with_derivatives_, [&](Simulator& simulator, Index first, Index count) {
+    if (count == all) {
+      simulator.simulateWithDerivatives(parameters, responses, derivatives, statuses);
+      return;
+    }
     MatrixXd part;
     simulator.simulateWithDerivatives(parameters.middleCols(first, count), responses.middleCols(first, count),
                                       part, statuses + first);
-    const std::lock_guard<std::mutex> lock(mutex);
-    parts[first] = std::move(part);
+    derivatives.middleCols(first * sampled, count * sampled) = part;
   });
-  if (parts.size() == 1) {
-    derivatives = std::move(parts.begin()->second);
-    return;
-  }
-  Index columns = 0;
-  for (const auto& [first, part] : parts) {
-    columns += part.cols();
-  }
-  derivatives.resize(responses.rows(), columns);
-  Index next = 0;
-  for (const auto& [first, part] : parts) {
-    derivatives.middleCols(next, part.cols()) = part;
-    next += part.cols();
-  }
 }
 
 std::unique_ptr<Simulator> shareAmongThreads(std::unique_ptr<Simulator> simulator) {

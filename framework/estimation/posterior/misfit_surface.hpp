@@ -59,6 +59,8 @@ class MisfitSurface {
   /// Every part looks at its window of that number from now on, its last one where it has fewer.
   void setWindow(std::size_t window);
 
+  /// Points (u x n) in half-widths of the bounds, as the parts take them.
+  Eigen::MatrixXd toBox(const Eigen::MatrixXd& points) const;
   /// At all columns of `points` (u x n), one batch of each part, with derivatives.
   std::vector<LocalSurface> linearize(const Eigen::MatrixXd& points);
   /// LocalSurface::misfit (n), infinite where a simulation fails; one batch of each part. After linearize().
@@ -76,7 +78,6 @@ class MisfitSurface {
   }
 
  private:
-  Eigen::MatrixXd toBox(const Eigen::MatrixXd& points) const;
   Eigen::VectorXd calcLosses(const Eigen::MatrixXd& points);
   void addPrior(LocalSurface& surface) const;
 

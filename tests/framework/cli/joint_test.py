@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 
-from support import EXPERIMENTS, FolderTestCase, call
+from support import EXPERIMENTS, WEIGHED_MACHINE, FolderTestCase, call
 
 OSCILLATOR = """
 name: oscillator
@@ -26,25 +26,14 @@ features: [{samples: {outputs: [x], start: 0.02, interval: 0.02, count: 70}}]
 noise: {stddev: {x: 1e-3}}
 """
 
-WEIGHED = """
-name: weighed
-parameters:
-  k: {bounds: [50, 150], unit: N/m}
-  m: {bounds: [0.5, 2], unit: kg}
-system:
-  bodies: {cart: {mass: m, joint: {type: slider, coordinates: [x]}}}
-  springs: [{coordinate: x, stiffness: k}]
-  dampers: [{coordinate: x, damping: 0.02}]
-  applied_forces: [{body: cart, force: [F, 0, 0]}]
-outputs: {x: {coordinate: x}}
-simulation: {duration: 2}
-features: [{samples: {outputs: [x], start: 0.05, interval: 0.05, count: 39}}]
-noise: {stddev: {x: 1e-3}}
-excitation: {F: {unit: N, pulses: [{amplitude: 0, start: 0, end: 9}]}}
+WEIGHED = (
+    WEIGHED_MACHINE
+    + """\
 trials:
   free: {initial: {coordinates: {x: 0.05}}}
   step: {excitation: {F: {unit: N, pulses: [{amplitude: 4, start: 0, end: 9}]}}}
 """
+)
 
 
 def free_decay(k, d, x0, v0, times):

@@ -39,6 +39,25 @@ noise: {stddev: {th: 3e-3}}
 """
 
 
+# Of which a free decay tells k / m alone, and a step both: trials follow.
+WEIGHED_MACHINE = """
+name: weighed
+parameters:
+  k: {bounds: [50, 150], unit: N/m}
+  m: {bounds: [0.5, 2], unit: kg}
+system:
+  bodies: {cart: {mass: m, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: 0.02}]
+  applied_forces: [{body: cart, force: [F, 0, 0]}]
+outputs: {x: {coordinate: x}}
+simulation: {duration: 2}
+features: [{samples: {outputs: [x], start: 0.05, interval: 0.05, count: 39}}]
+noise: {stddev: {x: 1e-3}}
+excitation: {F: {unit: N, pulses: [{amplitude: 0, start: 0, end: 9}]}}
+"""
+
+
 def call(*arguments, timeout=1500, **options):
     return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **options)
 

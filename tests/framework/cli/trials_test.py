@@ -4,23 +4,11 @@ import re
 import subprocess
 import unittest
 
-from support import FolderTestCase, call, read_csv
+from support import WEIGHED_MACHINE, FolderTestCase, call, read_csv
 
-EXPERIMENT = """
-name: weighed
-parameters:
-  k: {bounds: [50, 150], unit: N/m}
-  m: {bounds: [0.5, 2], unit: kg}
-system:
-  bodies: {cart: {mass: m, joint: {type: slider, coordinates: [x]}}}
-  springs: [{coordinate: x, stiffness: k}]
-  dampers: [{coordinate: x, damping: 0.02}]
-  applied_forces: [{body: cart, force: [F, 0, 0]}]
-outputs: {x: {coordinate: x}}
-simulation: {duration: 2}
-features: [{samples: {outputs: [x], start: 0.05, interval: 0.05, count: 39}}]
-noise: {stddev: {x: 1e-3}}
-excitation: {F: {unit: N, pulses: [{amplitude: 0, start: 0, end: 9}]}}
+EXPERIMENT = (
+    WEIGHED_MACHINE
+    + """\
 design: {train: {samples: 100}, test: {samples: 100}}
 trials:
   free:
@@ -31,6 +19,7 @@ trials:
     simulation: {duration: 3}
     features: [{samples: {outputs: [x], start: 0.1, interval: 0.1, count: 29}}]
 """
+)
 TRUTH = ["parameters.k=95", "parameters.m=1.2"]
 
 

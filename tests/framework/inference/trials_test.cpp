@@ -125,7 +125,7 @@ TEST(TrialReader, PutsTheFeaturesOfAllTrialsBehindOneAnother) {
   const ExperimentSpec both = readTwo();
   const TrialReader reader(both);
   const Table release = makeRecordingTable({"x"}, 0.1, 21), strike = makeRecordingTable({"x", "w"}, 0.15, 21);
-  const Recording first{"release", "release", &release, {}}, second{"strike", "strike", &strike, {}};
+  const RecordedTable first{"release", "release.csv", release}, second{"strike", "strike.csv", strike};
   const std::optional<VectorXd> features = reader.read({second, first});
   ASSERT_TRUE(features);
   ASSERT_EQ(features->size(), 60);

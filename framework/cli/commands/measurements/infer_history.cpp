@@ -26,7 +26,10 @@ void InferHistory::add(const InferredMeasurement& inferred) {
   history_.points.push_back({inferred.source, inferred.start, joinStatuses(estimate.statuses, ", "),
                              std::none_of(estimate.statuses.begin(), estimate.statuses.end(), misleads),
                              estimate.mean, estimate.stddev, bounds.lower, bounds.upper});
-  for (const Profile& profile : inferred.posterior ? inferred.posterior->profiles : std::vector<Profile>{}) {
+  if (!inferred.posterior) {
+    return;
+  }
+  for (const Profile& profile : inferred.posterior->profiles) {
     const auto parameter = static_cast<std::size_t>(profile.parameter);
     if (parameter < history_.parameters.size()) {  // a nuisance parameter has no place on the page
       history_.points.back().profiles.push_back(

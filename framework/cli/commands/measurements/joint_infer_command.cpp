@@ -114,21 +114,15 @@ bool inferByRun(const InferArguments& arguments) {
   const InferenceSource source(arguments.run);
   const TrialReader trials(source.getExperiment());
   std::vector<RecordedTable> tables;
+  std::string names;
   for (const RecordedFile& one : listTrialFiles(arguments)) {
     tables.push_back(
         {one.trial, one.file, readTable(one.file, trials.get(one.trial).listColumns(), MissingCells::kKeep)});
+    names += (names.empty() ? "" : ", ") + one.trial + "=" + one.file;
   }
-  std::vector<Recording> recordings;
-  std::optional<double> start;
-  if (!arguments.starts.empty()) {
-    start = arguments.starts.front();
-  }
-  std::string names;
-  for (const RecordedTable& table : tables) {
-    recordings.push_back({table.trial, table.trial, &table.table, start});
-    names += (names.empty() ? "" : ", ") + table.trial + "=" + table.name;
-  }
-  const std::optional<Eigen::VectorXd> features = trials.read(recordings);
+  const std::optional<double> start =
+      arguments.starts.empty() ? std::nullopt : std::optional<double>(arguments.starts.front());
+  const std::optional<Eigen::VectorXd> features = trials.read(tables, start);
   if (!features) {
     logInfo("the estimator of the run needs one whole recording of each trial; inferring by simulation");
     return false;

@@ -52,10 +52,7 @@ std::vector<LinearResponse> linearizeResponses(MisfitSurface& surface, const Mat
                                                const MatrixXd& axes) {
   const LogCoordinates& coordinates = surface.getCoordinates();
   const auto count = static_cast<std::size_t>(points.cols());
-  MatrixXd box(points.rows(), points.cols());
-  for (Index i = 0; i < points.cols(); ++i) {
-    box.col(i) = coordinates.toBox(points.col(i));
-  }
+  const MatrixXd box = surface.toBox(points);
   std::vector<LinearResponse> responses(count, {VectorXd(0), MatrixXd(0, axes.cols())});
   for (const MeasuredPart& part : surface.getParts()) {
     const std::vector<LocalMisfit> local = part.misfit->linearizeAll(box(part.unknown, Eigen::all));
@@ -137,11 +134,8 @@ std::optional<ResponseCurvature> ResponseCurvature::measure(MisfitSurface& surfa
     return {};
   }
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(basin.covariance);
-  ResponseCurvature curvature(
-      basin,
-      eigen.vectors * eigen.values.cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().asDiagonal());
-  const MatrixXd& axes = curvature.axes_;
-  curvature.to_axes_ = axes.cwiseAbs2().colwise().sum().cwiseInverse().asDiagonal() * axes.transpose();
+  const MatrixXd axes =
+      eigen.vectors * eigen.values.cwiseMax(std::numeric_limits<double>::min()).cwiseSqrt().asDiagonal();
   const VectorXd steps = chooseSteps(basin.local.at, axes);
   const Index u = steps.size();
   std::vector<Index> moved;
@@ -162,9 +156,13 @@ std::optional<ResponseCurvature> ResponseCurvature::measure(MisfitSurface& surfa
     along[static_cast<std::size_t>(moved[i])] =
         (responses[i + 1].jacobian - center.jacobian) / steps[moved[i]];
   }
+  ResponseCurvature curvature(basin.local.at, axes);
   curvature.reduce(center.residual, center.jacobian, pairBends(along, steps, center.residual.size()));
   return curvature;
 }
+
+ResponseCurvature::ResponseCurvature(const VectorXd& at, const MatrixXd& axes)
+    : at_(at), to_axes_(axes.cwiseAbs2().colwise().sum().cwiseInverse().asDiagonal() * axes.transpose()) {}
 
 void ResponseCurvature::reduce(const VectorXd& residual, const MatrixXd& jacobian, const MatrixXd& bends) {
   const MatrixXd directions = findDirections(bends);

@@ -23,14 +23,14 @@ class ResponseCurvature {
   double calcBend(const Eigen::VectorXd& point) const;
 
  private:
-  ResponseCurvature(const Basin& basin, const Eigen::MatrixXd& axes) : at_(basin.local.at), axes_(axes) {}
+  /// axes: u x u, orthogonal columns that are a standard deviation long.
+  ResponseCurvature(const Eigen::VectorXd& at, const Eigen::MatrixXd& axes);
 
   /// From r (m), J (m x u) and the columns of H_jk, j <= k, times 1 or, of j = k, 1/2 (m x u (u + 1) / 2).
   void reduce(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& bends);
 
   Eigen::VectorXd at_;
-  Eigen::MatrixXd axes_;      ///< u x u, whose columns are a standard deviation long
-  Eigen::MatrixXd to_axes_;   ///< its inverse
+  Eigen::MatrixXd to_axes_;   ///< u x u, the inverse of the axes
   Eigen::MatrixXd bends_;     ///< k x u (u + 1) / 2, in the k directions in which responses bend
   Eigen::MatrixXd jacobian_;  ///< k x u, of the residual there
   Eigen::VectorXd residual_;  ///< k
