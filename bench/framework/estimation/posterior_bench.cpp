@@ -55,10 +55,12 @@ std::string joinRidges(const std::vector<Ridge>& ridges, const std::vector<Param
 }  // namespace
 
 std::string Judged::describe() const {
+  const std::string named = ridges.empty() ? "" : ", name " + ridges;
   return fmt::format(
-      "{}{} (effective {:.0f}, Pareto {:.2f}, chi-square {:.1f}, {:+.1f} to the truth's, found "
+      "{}{}{} (effective {:.0f}, Pareto {:.2f}, chi-square {:.1f}, {:+.1f} to the truth's, found "
       "{} of {}, {:.2f} s)",
-      missed ? "MISSED, " : "", status, size, pareto_shape, chi_square, excess, found_best, starts, seconds);
+      missed ? "MISSED, " : "", status, named, size, pareto_shape, chi_square, excess, found_best, starts,
+      seconds);
 }
 
 PosteriorBench::PosteriorBench(const StudyRequest& request)
@@ -141,8 +143,8 @@ Judged PosteriorBench::judge(const Measured& measured, int test) const {
   judged.status = joinStatuses(estimate.statuses, ", ");
   judged.ok = judged.status == "ok";
   judged.reliable = posterior.isReliable();
+  judged.ridges = joinRidges(inferred.ridges, getParameters());
   if (judged.reliable) {
-    judged.ridges = joinRidges(inferred.ridges, getParameters());
     compare(estimate, measured, test, judged);
     if (request_.reference > 0) {
       compareWithMore(estimate, measured, test, judged);
@@ -158,6 +160,7 @@ void PosteriorBench::compare(const Estimate& estimate, const Measured& measured,
   const Eigen::ArrayXd error = estimate.mean - truth;
   judged.z = error / estimate.stddev.array();
   judged.error = error / widths.array();
+  judged.stddev = estimate.stddev.cwiseQuotient(widths);
   judged.limit = measured.limit.head(p).cwiseQuotient(widths);
   judged.held95.resize(p);
   judged.held50.resize(p);

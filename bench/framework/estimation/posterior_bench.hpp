@@ -34,9 +34,10 @@ struct Measured {
 /// What was inferred of it.
 struct Judged {
   bool reliable = false, ok = false, missed = false;
-  std::string status, ridges;         ///< statuses, and what was identified; joined
+  std::string status, ridges;         ///< statuses, and what was identified; joined; of all answers
   Eigen::VectorXd z, held95, held50;  ///< p; 1 where the interval holds
   Eigen::VectorXd error, limit;       ///< p, in widths
+  Eigen::VectorXd stddev;             ///< likewise, of the posterior
   Eigen::VectorXi ranks;              ///< p + 1
   /// p: of mean, in sds, and sd against those of more draws, as shares; empty where none are asked for.
   Eigen::VectorXd mean_error, stddev_error;

@@ -68,15 +68,17 @@ void printTotals(const Totals& totals) {
   }
 }
 
-/// Of reliable posteriors, p each; ratio: of the errors to the information limit.
+/// Of reliable posteriors, p each; ratio: of the errors to the information limit; expected: of the
+/// posteriors' standard deviations to it, which is what the errors' would be of infinitely many tests if
+/// these are right.
 struct Figures {
-  VectorXd coverage95, coverage50, ratio, worst;
+  VectorXd coverage95, coverage50, ratio, expected, worst;
   VectorXd uniformity;  ///< p + 1, of the ranks; the last of all together
 };
 
 Figures summarize(const std::vector<Judged>& judged, Index p) {
-  Figures figures{VectorXd::Zero(p), VectorXd::Zero(p), {}, VectorXd::Zero(p), {}};
-  VectorXd errors = VectorXd::Zero(p), limits = VectorXd::Zero(p);
+  Figures figures{VectorXd::Zero(p), VectorXd::Zero(p), {}, {}, VectorXd::Zero(p), {}};
+  VectorXd errors = VectorXd::Zero(p), variances = VectorXd::Zero(p), limits = VectorXd::Zero(p);
   Eigen::MatrixXi ranks(p + 1, static_cast<Index>(judged.size()));
   Index n = 0;
   for (const Judged& one : judged) {
@@ -85,6 +87,7 @@ Figures summarize(const std::vector<Judged>& judged, Index p) {
       figures.coverage50 += one.held50;
       figures.worst = figures.worst.cwiseMax(one.z.cwiseAbs());
       errors += one.error.cwiseAbs2();
+      variances += one.stddev.cwiseAbs2();
       limits += one.limit.cwiseAbs2();
       ranks.col(n++) = one.ranks;
     }
@@ -92,6 +95,7 @@ Figures summarize(const std::vector<Judged>& judged, Index p) {
   figures.coverage95 /= static_cast<double>(n);
   figures.coverage50 /= static_cast<double>(n);
   figures.ratio = errors.cwiseQuotient(limits).cwiseSqrt();
+  figures.expected = variances.cwiseQuotient(limits).cwiseSqrt();
   figures.uniformity = n >= kMinRanks ? calcRankCalibration(ranks.leftCols(n)).p_value
                                       : VectorXd::Constant(p + 1, std::nan(""));
   return figures;
@@ -100,9 +104,12 @@ Figures summarize(const std::vector<Judged>& judged, Index p) {
 void printFigures(const Figures& figures, const std::vector<ParameterSpec>& parameters) {
   const auto p = static_cast<Index>(parameters.size());
   for (Index j = 0; j < p; ++j) {
-    fmt::print("  {:>10}  coverage95 {:.3f}  coverage50 {:.3f}  ratio {:.3f}  worst z {:.1f}  SBC p {:.3f}\n",
-               parameters[static_cast<std::size_t>(j)].name.text, figures.coverage95[j],
-               figures.coverage50[j], figures.ratio[j], figures.worst[j], figures.uniformity[j]);
+    fmt::print(
+        "  {:>10}  coverage95 {:.3f}  coverage50 {:.3f}  ratio {:.3f} (expected {:.3f})  worst z {:.1f}  SBC "
+        "p "
+        "{:.3f}\n",
+        parameters[static_cast<std::size_t>(j)].name.text, figures.coverage95[j], figures.coverage50[j],
+        figures.ratio[j], figures.expected[j], figures.worst[j], figures.uniformity[j]);
   }
   fmt::print("  {:>10}  SBC p {:.3f}\n", "together", figures.uniformity[p]);
 }
