@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "framework/estimation/estimate.hpp"
+#include "framework/estimation/trained/rank_record.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -66,15 +67,7 @@ RankCalibration calcRankCalibration(const Eigen::MatrixXi& ranks) {
 }
 
 std::vector<Index> findMiscalibrated(const RankCalibration& calibration) {
-  constexpr double kChance = 1e-3;
-  const double least = kChance / static_cast<double>(calibration.p_value.size());
-  std::vector<Index> found;
-  for (Index q = 0; q < calibration.p_value.size(); ++q) {
-    if (calibration.p_value[q] < least) {
-      found.push_back(q);
-    }
-  }
-  return found;
+  return findUneven(calibration.p_value);
 }
 
 }  // namespace twinmap

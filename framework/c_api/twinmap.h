@@ -192,7 +192,7 @@ TWINMAP_API const char* twinmap_get_method(const twinmap_inferrer* inferrer);
 TWINMAP_API size_t twinmap_count_statuses(const twinmap_inferrer* inferrer);
 /** "ok", or what is to be said against the estimate, the most severe first: "model_mismatch",
  * "outside_training", "at_bounds", "uninformative", "multimodal", "nonlinear", "not_refined", "unreliable",
- * "uncalibrated", "estimator_limited", "not_simulated" (docs/explanation/trust.md). NULL beyond the last. */
+ * "uncalibrated", "estimator_limited", "posterior_uncalibrated", "not_simulated" (docs/explanation/trust.md). NULL beyond the last. */
 TWINMAP_API const char* twinmap_get_status(const twinmap_inferrer* inferrer, size_t index);
 
 /** Numbers behind the statuses. */

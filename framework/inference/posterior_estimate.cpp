@@ -157,13 +157,18 @@ bool SimulatorFit::hasOffset() const {
                      [](const NoiseReport& report) { return report.found.has_offset; });
 }
 
+const char* PosteriorEstimate::getStatus() const {
+  return !isReliable() ? "unreliable" : doubt.empty() ? "ok" : "posterior_uncalibrated";
+}
+
 const char* toString(PosteriorSource source) {
   return source == PosteriorSource::kSimulator ? "simulator" : "surrogate";
 }
 
 PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
-                                        const std::vector<ParameterSpec>& unknown) {
+                                        const std::vector<ParameterSpec>& unknown, const std::string& doubt) {
   PosteriorEstimate made;
+  made.doubt = doubt;
   made.effective_sample_size = posterior.effective_sample_size;
   made.pareto_shape = posterior.pareto_shape;
   made.evaluations = posterior.evaluations;

@@ -61,19 +61,21 @@ struct PosteriorEstimate {
   Estimate estimate;  ///< with draws of all unknown parameters; not given unless it is reliable
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;
-  int evaluations = 0;                                  ///< draws of all rounds
-  std::string message;                                  ///< why it is not reliable; else empty
-  std::optional<SimulatorFit> fit;                      ///< where it is the simulator's
+  int evaluations = 0;              ///< draws of all rounds
+  std::string message;              ///< why it is not reliable; else empty
+  std::string doubt{};              ///< what speaks against the surrogate's (findPosteriorDoubt); else empty
+  std::optional<SimulatorFit> fit;  ///< where it is the simulator's
   PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
   std::vector<Profile> profiles;                        ///< likewise, where they were asked for
 
   bool isReliable() const { return message.empty(); }
-  const char* getStatus() const { return isReliable() ? "ok" : "unreliable"; }
+  /// "ok", "unreliable", or "posterior_uncalibrated" of a surrogate's that is in doubt.
+  const char* getStatus() const;
 };
 
-/// unknown: all u parameters that were drawn.
+/// unknown: all u parameters that were drawn. doubt: PosteriorEstimate::doubt.
 PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
-                                        const std::vector<ParameterSpec>& unknown);
+                                        const std::vector<ParameterSpec>& unknown, const std::string& doubt);
 /// p: how many of them are reported, the first ones; infos: of the residuals, which are tested as they should
 /// be independent and of unit variance (SimulatorPosterior::standardized): outliers not at all, noise of
 /// unknown size by its shape alone. The reports of the noise have no names yet.

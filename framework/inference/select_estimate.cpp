@@ -153,6 +153,9 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
     return {"not_simulated"};
   }
   std::vector<std::string> statuses = isSampled(inferred) ? listOfSampled(inferred) : listOfOthers(inferred);
+  if (inferred.posterior && inferred.posterior->isReliable() && !inferred.posterior->doubt.empty()) {
+    statuses.emplace_back(inferred.posterior->getStatus());
+  }
   if (statuses.empty() && (inferred.trust || posterior != nullptr)) {
     statuses.emplace_back(toString(TrustStatus::kOk));
   }

@@ -32,7 +32,8 @@ bool isUncalibrated(const InferredMeasurement& inferred);
 /// inferred), "noise_coloured" (its autocorrelation is inferred), "sensor_offset" (inferred);
 /// "uninformative"; "multimodal" where several values that lie apart fit; "nonlinear" or
 /// "not_refined" where a refinement was tried and not accepted; "unreliable" where the simulator's posterior
-/// was sampled and its draws do not stand for it; "uncalibrated"; "estimator_limited". Of the simulator's
+/// was sampled and its draws do not stand for it; "uncalibrated"; "estimator_limited";
+/// "posterior_uncalibrated" where the surrogate's posterior is beside it and in doubt. Of the simulator's
 /// posterior neither what the estimator was trained on nor how a refinement ended is said. {"ok"} where
 /// nothing is; empty where nobody has judged.
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred);

@@ -71,6 +71,10 @@ const std::vector<NoticeText> kStatuses{
      "Sample the posterior, which needs no normal distribution: --posterior.",
      "The estimator takes its errors for smaller than they are, as along a ridge; refined, least squares "
      "ended in another basin, or at a bound."},
+    {Notice::kPosteriorUncalibrated, "posterior_uncalibrated", true, kDegraded,
+     "the posterior under the surrogate is not to be relied on: {0}",
+     "Take the simulator's: --posterior-from simulator.",
+     "The surrogate's errors are not normal, or not known, as where impacts or friction bend the response."},
     {Notice::kNonlinear, "nonlinear", true, kDegraded,
      "the parameters fit, but the misfit around them is not that of a normal distribution",
      "Sample the posterior, which needs no normal distribution: --posterior.",

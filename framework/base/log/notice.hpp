@@ -28,6 +28,7 @@ enum class Notice {
   kMultimodal,
   kTrialsDisagree,
   kUncalibrated,
+  kPosteriorUncalibrated,
   kNonlinear,
   kNotRefined,
   kEstimatorLimited,

@@ -16,6 +16,17 @@ const char* toString(SurrogateStatus status) {
   return status == SurrogateStatus::kOk ? "ok" : "estimator_limited";
 }
 
+std::vector<Index> SurrogateValidation::listEnlarged() const {
+  constexpr double kTolerated = 1.2;
+  std::vector<Index> found;
+  for (Index k = 0; k < stddev_scale.size(); ++k) {
+    if (stddev_scale[k] > kTolerated) {
+      found.push_back(k);
+    }
+  }
+  return found;
+}
+
 void Surrogate::convertMoments(const gp::Moments& normalised, VectorXd& mean, VectorXd& stddev) const {
   const auto widths = half_width.head(parameters).array();
   mean = center.head(parameters).array() + widths * normalised.mean.head(parameters).array();

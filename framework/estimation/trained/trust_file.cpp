@@ -80,6 +80,8 @@ void writeTrustModel(Hdf5Writer& file, const std::string& group, const TrustMode
   file.write(group + "/reference/refinement/unexplained", trust.refinement.unexplained);
   writeCoverage(file, group + "/reference/coverage", trust.coverage);
   writeCoverage(file, group + "/reference/refinement/coverage", trust.refined_coverage);
+  file.write(group + "/reference/posteriors/ranked", static_cast<double>(trust.posteriors.ranked));
+  file.write(group + "/reference/posteriors/p_value", trust.posteriors.p_value);
   file.writeSamples(group + "/cloud/inputs", trust.cloud.inputs);
   file.write(group + "/cloud/scale", trust.cloud.scale);
   file.write(group + "/cloud/reach", trust.cloud.reach);
@@ -107,6 +109,9 @@ TrustModel readTrustModel(const Hdf5Reader& file, const std::string& group,
                       file.readVector(group + "/reference/refinement/unexplained")};
   trust.coverage = readCoverage(file, group + "/reference/coverage");
   trust.refined_coverage = readCoverage(file, group + "/reference/refinement/coverage");
+  if (const std::string posteriors = group + "/reference/posteriors"; file.contains(posteriors)) {
+    trust.posteriors = {file.readCount(posteriors + "/ranked"), file.readVector(posteriors + "/p_value")};
+  }
   trust.cloud = {file.readSamples(group + "/cloud/inputs"), file.readVector(group + "/cloud/scale"),
                  file.readNumber(group + "/cloud/reach")};
   trust.center = file.readVector(group + "/box/center");

@@ -9,6 +9,7 @@
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/trained/anomaly.hpp"
 #include "framework/estimation/trained/coverage_record.hpp"
+#include "framework/estimation/trained/rank_record.hpp"
 #include "framework/estimation/trained/residual_space.hpp"
 
 namespace twinmap {
@@ -71,6 +72,7 @@ struct TrustModel {
   ReferenceDistribution noise_anomaly;        ///< of noise alone: of answers that the simulator explains
   RefinementReference refinement;
   CoverageRecord coverage, refined_coverage;  ///< of the estimator's test samples, and of those refined
+  RankRecord posteriors;                      ///< of posteriors under `forward`
   TrainingCloud cloud;
   Eigen::VectorXd center, half_width;  ///< m, of the sampled box
   Eigen::Index unknown = 0;            ///< leading variables of a point that a measurement leaves open

@@ -61,6 +61,8 @@ void MeasurementSession::choosePosterior(const SessionOptions& options) {
     simulator_->requireNoise();
   } else {
     sampler_.emplace(makeSampler(inferrer_, posterior_options_));
+    doubt_ = findPosteriorDoubt(inferrer_.getMap(), inferrer_.getTrustModel(),
+                                inferrer_.getExperiment().model.parameters);
   }
 }
 
@@ -110,7 +112,7 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
   }
   if (sampler_) {
     inferred.posterior = makePosteriorEstimate(sampler_->sampleFeatures(features, known),
-                                               collectUnknown(inferrer_.getExperiment().model));
+                                               collectUnknown(inferrer_.getExperiment().model), doubt_);
   }
   return inferred;
 }

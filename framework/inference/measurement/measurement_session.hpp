@@ -70,6 +70,7 @@ class MeasurementSession final : public MeasurementInference {
   Inferrer::Workspace workspace_;
   std::optional<SimulatorRefiner> simulator_;  // where it may be asked
   std::optional<PosteriorSampler> sampler_;    // where the surrogate's posterior was asked for
+  std::string doubt_;                          // PosteriorEstimate::doubt of what it samples
   std::unique_ptr<DirectInference> direct_;    // made for the first recording that lacks samples
   SimulatorPosteriorOptions posterior_options_;
   bool refines_ = false;

@@ -144,6 +144,9 @@ Json toJson(const PosteriorEstimate& posterior, const std::vector<ParameterSpec>
   } else {
     json["message"] = posterior.message;
   }
+  if (!posterior.doubt.empty()) {
+    json["doubt"] = posterior.doubt;
+  }
   json["effective_sample_size"] = posterior.effective_sample_size;
   json["pareto_shape"] = posterior.pareto_shape;
   json["evaluations"] = posterior.evaluations;

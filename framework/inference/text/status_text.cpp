@@ -227,6 +227,9 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   if (is(Notice::kUncalibrated)) {
     return explainNotice(Notice::kUncalibrated);
   }
+  if (is(Notice::kPosteriorUncalibrated)) {
+    return explainNotice(Notice::kPosteriorUncalibrated, inferred.posterior->doubt);
+  }
   return is(Notice::kNotSimulated) ? explainNotice(Notice::kNotSimulated, inferred.posterior->message) : "";
 }
 

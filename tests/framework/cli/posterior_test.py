@@ -136,10 +136,19 @@ class Posterior(FolderTestCase):
         posterior = json.loads(
             self.infer(self.measured, "--json", "--posterior", "--posterior-from", "surrogate", run=run)
         )["posterior"]
-        self.assertEqual(posterior["status"], "ok")
+        self.assertEqual(posterior["status"], "posterior_uncalibrated")
+        self.assertIn("nothing has compared it with true values", posterior["doubt"])
         for name, true in TRUE.items():
             found = posterior["parameters"][name]
             self.assertLess(abs(found["mean"] - true), 4 * found["sd"], name)
+
+    def test_are_right_where_the_run_found_their_ranks_even(self):
+        run = self.run_experiment("ranked", "inverse_map=gp", "evaluation.calibration=sbc")
+        answer = json.loads(
+            self.infer(self.measured, "--json", "--posterior", "--posterior-from", "surrogate", run=run)
+        )
+        self.assertEqual(answer["posterior"]["status"], "ok")
+        self.assertNotIn("posterior_uncalibrated", answer["statuses"])
 
     def test_errors_say_what_to_do(self):
         silent = self.run_experiment("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")

@@ -199,5 +199,18 @@ TEST(SelectEstimate, OfARunWhoseIntervalsHeldTooLittleIsUncalibrated) {
   EXPECT_EQ(listStatuses(inferred), Statuses{"uncalibrated"});
 }
 
+TEST(SelectEstimate, BesideASurrogatesPosteriorInDoubtIsNotOk) {
+  InferredMeasurement inferred = makeInferred();
+  inferred.refined = makeRefined(RefinementStatus::kAccepted);
+  inferred.posterior = PosteriorEstimate{};
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+  inferred.posterior->doubt = "its ranks are uneven";
+  EXPECT_EQ(listStatuses(inferred), Statuses{"posterior_uncalibrated"});
+  EXPECT_STREQ(inferred.posterior->getStatus(), "posterior_uncalibrated");
+  inferred.posterior->message = "too few draws bear the weight";
+  EXPECT_STREQ(inferred.posterior->getStatus(), "unreliable");
+  EXPECT_EQ(listStatuses(inferred), Statuses{"ok"});
+}
+
 }  // namespace
 }  // namespace twinmap

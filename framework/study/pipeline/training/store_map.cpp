@@ -63,6 +63,9 @@ void storeMap(const std::filesystem::path& file, const Study& study, const Evalu
       (method.method == toString(EstimationMethod::kRefined) ? trust.refined_coverage : trust.coverage) =
           recordCoverage(method);
     }
+    if (evaluation.calibration) {
+      trust.posteriors = {evaluation.calibration->measurements, evaluation.calibration->ranks.p_value};
+    }
   }
   const ExperimentSpec experiment = nameEngine(takeWhole(study), study.simulator);
   TrainedFile stored{

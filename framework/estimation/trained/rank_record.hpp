@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace twinmap {
+
+/// How evenly the true values of a run's test samples rank among draws of their posteriors under the
+/// surrogate.
+struct RankRecord {
+  Eigen::Index ranked = 0;    ///< samples; 0 where nobody looked
+  Eigen::VectorXd p_value{};  ///< p + 1: of each parameter, then of all together
+
+  /// Quantities whose ranks right posteriors would hardly have (findUneven).
+  std::vector<Eigen::Index> listUneven() const;
+};
+
+/// Of p-values of several quantities those so small that with all of them right one of a thousand sets names
+/// any.
+std::vector<Eigen::Index> findUneven(const Eigen::VectorXd& p_value);
+
+}  // namespace twinmap
