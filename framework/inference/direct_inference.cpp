@@ -142,7 +142,7 @@ bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::Vect
   inferred.trust.reset();
   inferred.posterior = std::move(clocked->posterior);
   inferred.clock_faults = std::move(clocked->faults);
-  inferred.ridges = clocked->simulator->findRidges(inferred.posterior->estimate.draws, known);
+  inferred.ridges = clocked->simulator->findRidges(*inferred.posterior, known);
   return true;
 }
 
@@ -176,7 +176,7 @@ InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, co
   }
   inferred.posterior =
       simulator.samplePosterior(features, known, simulator.describeNoise(clipped), {}, options_);
-  inferred.ridges = simulator.findRidges(inferred.posterior->estimate.draws, known);
+  inferred.ridges = simulator.findRidges(*inferred.posterior, known);
   inferred.quantities = quantities_;
   inferred.prior = prior_;
   return inferred;

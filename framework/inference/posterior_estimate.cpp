@@ -190,6 +190,7 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
   made.evaluations = static_cast<int>(posterior.weights.size());
   made.message = posterior.message;
   made.fit = makeFit(posterior, unknown, infos);
+  made.places = posterior.places;
   if (made.isReliable()) {
     made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),
                                  posterior.mean.head(p), posterior.covariance.topLeftCorner(p, p));

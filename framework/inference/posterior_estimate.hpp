@@ -67,6 +67,7 @@ struct PosteriorEstimate {
   std::optional<SimulatorFit> fit;  ///< where it is the simulator's
   PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
   std::vector<Profile> profiles;                        ///< likewise, where they were asked for
+  Eigen::MatrixXd places{};                             ///< SimulatorPosterior::places
 
   bool isReliable() const { return message.empty(); }
   /// "ok", "unreliable", or "posterior_uncalibrated" of a surrogate's that is in doubt.

@@ -308,17 +308,24 @@ std::vector<NoiseHypothesis> SimulatorRefiner::listNoise(const NoiseHypothesis& 
   return listNoiseHypotheses(stated, {trial.model, local.residual, local.jacobian});
 }
 
-std::vector<Ridge> SimulatorRefiner::findRidges(const BoundedDraws& draws, const VectorXd& known) const {
-  if (!draws.isGiven() || !simulator_->hasDerivatives()) {
+MatrixXd SimulatorRefiner::listRidgePoints(const PosteriorEstimate& posterior) const {
+  const BoundedDraws& draws = posterior.estimate.draws;
+  if (!draws.isGiven()) {
+    return posterior.places;
+  }
+  const bool may_have =
+      !Prior(getUnknown(), model_.priors).isUniform() || mayHaveRidges(draws, model_.parameters);
+  return may_have ? MatrixXd(draws.points(Eigen::all, chooseDraws(draws.weights))) : MatrixXd();
+}
+
+std::vector<Ridge> SimulatorRefiner::findRidges(const PosteriorEstimate& posterior,
+                                                const VectorXd& known) const {
+  const MatrixXd places = listRidgePoints(posterior);
+  if (places.cols() == 0 || !simulator_->hasDerivatives()) {
     return {};
   }
-  if (Prior(getUnknown(), model_.priors).isUniform() && !mayHaveRidges(draws, model_.parameters)) {
-    return {};
-  }
-  const std::vector<Index> chosen = chooseDraws(draws.weights);
-  const Index u = draws.points.rows(), count = static_cast<Index>(chosen.size());
-  MatrixXd points(u + known.size(), count);
-  points << draws.points(Eigen::all, chosen), known.replicate(1, count);
+  MatrixXd points(places.rows() + known.size(), places.cols());
+  points << places, known.replicate(1, places.cols());
   return simulateRidges(*simulator_, extractor_, noise_, model_, points, 1);
 }
 

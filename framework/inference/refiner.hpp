@@ -55,9 +55,9 @@ class SimulatorRefiner {
   /// range cut off (their numbers are those of the experiment's features).
   NoiseHypothesis describeNoise(const std::vector<ClippedSample>& clipped) const;
 
-  /// The ridges along which draws of a posterior lie; none where derivatives are not exact. Cost: 32
-  /// simulations with derivatives.
-  std::vector<Ridge> findRidges(const BoundedDraws& draws, const Eigen::VectorXd& known) const;
+  /// The ridges along which draws of a posterior lie or, where it is not reliable, the floors of its valleys;
+  /// none where derivatives are not exact. Cost: 32 simulations with derivatives.
+  std::vector<Ridge> findRidges(const PosteriorEstimate& posterior, const Eigen::VectorXd& known) const;
 
   /// The posterior of a trial alone as an estimate, its residual in the places of the features that are
   /// there.
@@ -113,6 +113,7 @@ class SimulatorRefiner {
 
  private:
   const RefinementModel& getModel() const;
+  Eigen::MatrixXd listRidgePoints(const PosteriorEstimate& posterior) const;
   RefinementTask makeTask(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
                           const Eigen::VectorXd& known, const TrustModel* trust) const;
   Eigen::MatrixXd listStarts(const InferredMeasurement& inferred, const Eigen::VectorXd& features,

@@ -9,9 +9,8 @@
 #include "framework/estimation/posterior/basin_search.hpp"
 #include "framework/estimation/posterior/draws/posterior_draws.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
+#include "framework/estimation/posterior/posterior_problem.hpp"
 #include "framework/estimation/posterior/profile_likelihood.hpp"
-#include "framework/estimation/refined/misfit.hpp"
-#include "framework/estimation/segments/segmented_recording.hpp"
 
 namespace twinmap {
 
@@ -44,6 +43,9 @@ struct SimulatorPosterior {
   int found_best = 0;   ///< of them, those that ended in the best one
   int simulations = 0;  ///< those with derivatives count once
   std::string message;  ///< why it is not reliable; else empty
+  /// u x n: where on the floors of its valleys it fits (findValleyPlaces), best first, in the place of draws
+  /// where it is not reliable but noise explains it; empty else, and of more than kManyUnknown.
+  Eigen::MatrixXd places;
 
   bool isReliable() const { return message.empty(); }
   /// Whether noise explains the best point (calcChiSquareLimit).
@@ -55,29 +57,6 @@ struct SimulatorPosterior {
   Eigen::MatrixXd calcQuantiles(const Eigen::VectorXd& probabilities) const;
   /// Draws of equal weight (u x n), one for each of the uniforms (n) in (0, 1). Only where it is reliable.
   Eigen::MatrixXd resample(const Eigen::VectorXd& uniforms) const;
-};
-
-/// One measurement, and what simulates its trial.
-struct MeasuredTrial {
-  Simulator* simulator;
-  const RefinementModel* model;
-  Eigen::VectorXd features;           ///< d, finite where the model looks at them
-  Eigen::VectorXd held;               ///< a point of the trial's sampled box, whose known inputs are kept
-  std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
-  NoiseHypothesis noise{};
-  std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
-  /// In the place of model, features, held and noise, where the trial is a recording in segments.
-  std::shared_ptr<const SegmentedRecording> segments{};
-};
-
-/// What is known of a machine: one or several measurements, and what was known before.
-struct PosteriorProblem {
-  /// u: the machine's parameters, then what each measurement leaves unknown besides.
-  std::vector<ParameterSpec> unknown;
-  std::vector<PriorGroupSpec> priors;  ///< of several of them together
-  std::vector<MeasuredTrial> trials;
-  /// Of the unknown parameters, the first that are drawn; the others are integrated out (MarginalSurface).
-  Eigen::Index drawn = 0;
 };
 
 struct SimulatorPosteriorOptions : PosteriorDrawOptions {

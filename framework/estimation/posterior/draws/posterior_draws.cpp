@@ -10,6 +10,7 @@
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/draws/local_walk.hpp"
 #include "framework/estimation/posterior/draws/marginal_surface.hpp"
+#include "framework/estimation/posterior/draws/valley_places.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -155,6 +156,20 @@ AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Basin& basin, bool has_
                           curvature ? &*curvature : nullptr);
 }
 
+/// Where chains begin: all over the valley, some at the basins' minima. From a minimum in a corner of the box
+/// hardly a step leads anywhere, and draws of its surroundings look as good as those of all the valley.
+MatrixXd listWalkStarts(MisfitSurface& surface, const std::vector<Basin>& basins, std::uint64_t seed) {
+  constexpr Index kChains = 48, kOfBasins = 8;
+  const MatrixXd places = findValleyPlaces(surface, basins, seed);
+  const Index spread = places.cols() > 0 ? kChains - kOfBasins : 0;
+  MatrixXd starts(surface.getDimensions(), kChains);
+  for (Index k = 0; k < kChains; ++k) {
+    starts.col(k) = k < spread ? places.col(k * places.cols() / spread % places.cols())
+                               : basins[static_cast<std::size_t>(k) % basins.size()].local.at;
+  }
+  return starts;
+}
+
 }  // namespace
 
 /// The basins as they are seen in the first `drawn` coordinates alone.
@@ -208,24 +223,28 @@ AdaptiveDraws drawInSums(MisfitSurface& surface, const std::vector<Basin>& basin
 
 AdaptiveDraws drawAlongWalks(MisfitSurface& surface, const std::vector<Basin>& basins,
                              const PosteriorDrawOptions& options) {
-  constexpr int kChains = 48, kSteps = 48;
+  constexpr int kSteps[] = {48, 144};  // where the first draws are not to be believed, longer chains
   PosteriorDrawOptions more = options;
   more.draws *= 2;
-  MatrixXd starts(surface.getDimensions(), kChains);
-  for (Index k = 0; k < kChains; ++k) {
-    starts.col(k) = basins[static_cast<std::size_t>(k) % basins.size()].local.at;
-  }
-  const MatrixXd walked = walkPosterior(surface, starts, kSteps, options.seed);
   Numbers numbers(surface.getDimensions(), more);
   importance::AdaptiveOptions adaptive = makeOptions();
   adaptive.local = [&surface](const MatrixXd& points, const MatrixXd& lower) {
     return linearizeAt(surface, points, lower);
   };
-  return importance::sampleAdaptively(
-      [&](const MatrixXd& points) { return surface.calcLogPosteriors(points); },
-      importance::coverDraws(importance::weigh(walked, VectorXd::Zero(walked.cols())), numbers.get(0).centers,
-                             adaptive.local),
-      [&](int round) -> const RoundNumbers& { return numbers.get(round + 1); }, adaptive);
+  const MatrixXd starts = listWalkStarts(surface, basins, options.seed);
+  AdaptiveDraws drawn;
+  for (const int steps : kSteps) {
+    const MatrixXd walked = walkPosterior(surface, starts, steps, options.seed);
+    drawn = importance::sampleAdaptively(
+        [&](const MatrixXd& points) { return surface.calcLogPosteriors(points); },
+        importance::coverDraws(importance::weigh(walked, VectorXd::Zero(walked.cols())),
+                               numbers.get(0).centers, adaptive.local),
+        [&](int round) -> const RoundNumbers& { return numbers.get(round + 1); }, adaptive);
+    if (drawn.isReliable()) {
+      break;
+    }
+  }
+  return drawn;
 }
 
 }  // namespace twinmap

@@ -1,0 +1,62 @@
+#include "framework/estimation/posterior/draws/valley_places.hpp"
+
+#include <cmath>
+
+#include "framework/estimation/posterior/search_team.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+constexpr double kValues[] = {-0.8, -0.4, 0.0, 0.4, 0.8};  // in half-widths
+constexpr Index kElsewhere = 2;                            // starts a value that know of no basin
+
+/// The point of the basin's linear model with coordinate j at a value, where it is nearest to it.
+VectorXd startFromNearest(const std::vector<Basin>& basins, Index j, double value) {
+  const Basin* nearest = &basins.front();
+  for (const Basin& basin : basins) {
+    if (std::abs(basin.local.at[j] - value) < std::abs(nearest->local.at[j] - value)) {
+      nearest = &basin;
+    }
+  }
+  const VectorXd along = nearest->covariance.col(j) / nearest->covariance(j, j);
+  return (nearest->local.at + (value - nearest->local.at[j]) * along).cwiseMax(-1.0).cwiseMin(1.0);
+}
+
+}  // namespace
+
+MatrixXd findValleyPlaces(MisfitSurface& surface, const std::vector<Basin>& basins, std::uint64_t seed) {
+  constexpr int kIterations = 8;
+  constexpr double kBears = 25.0;  // as of basins: e^-12.5 of the density
+  const Index u = surface.getDimensions(), values = static_cast<Index>(std::size(kValues));
+  const Index starts_per_value = 1 + kElsewhere;
+  const MatrixXd elsewhere = makeStarts(u, seed, static_cast<int>(u * values * kElsewhere));
+  MatrixXd starts(u, u * values * starts_per_value), held(u, starts.cols());
+  for (Index j = 0, column = 0; j < u; ++j) {
+    for (Index v = 0; v < values; ++v) {
+      const double value = kValues[v];
+      starts.col(column) = startFromNearest(basins, j, value);
+      starts.middleCols(column + 1, kElsewhere) =
+          elsewhere.middleCols((j * values + v) * kElsewhere, kElsewhere);
+      starts.row(j).segment(column, starts_per_value).setConstant(value);
+      held.middleCols(column, starts_per_value) = VectorXd::Unit(u, j).replicate(1, starts_per_value);
+      column += starts_per_value;
+    }
+  }
+  SearchTeam team(surface, starts, held);
+  team.run(kIterations);
+  MatrixXd places(u, starts.cols());
+  Index count = 0;
+  for (const LocalSurface& end : team.listEnds()) {
+    if (end.misfit < basins.front().local.misfit + kBears) {
+      places.col(count++) = end.at;
+    }
+  }
+  return places.leftCols(count);
+}
+
+}  // namespace twinmap

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "framework/estimation/posterior/noise/noise_hypothesis.hpp"
+#include "framework/estimation/refined/misfit.hpp"
+#include "framework/estimation/segments/segmented_recording.hpp"
+
+namespace twinmap {
+
+/// One measurement, and what simulates its trial.
+struct MeasuredTrial {
+  Simulator* simulator;
+  const RefinementModel* model;
+  Eigen::VectorXd features;           ///< d, finite where the model looks at them
+  Eigen::VectorXd held;               ///< a point of the trial's sampled box, whose known inputs are kept
+  std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
+  NoiseHypothesis noise{};
+  std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
+  /// In the place of model, features, held and noise, where the trial is a recording in segments.
+  std::shared_ptr<const SegmentedRecording> segments{};
+};
+
+/// What is known of a machine: one or several measurements, and what was known before.
+struct PosteriorProblem {
+  /// u: the machine's parameters, then what each measurement leaves unknown besides.
+  std::vector<ParameterSpec> unknown;
+  std::vector<PriorGroupSpec> priors;  ///< of several of them together
+  std::vector<MeasuredTrial> trials;
+  /// Of the unknown parameters, the first that are drawn; the others are integrated out (MarginalSurface).
+  Eigen::Index drawn = 0;
+};
+
+}  // namespace twinmap

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/posterior_problem.hpp"
+#include "framework/estimation/segments/segmented_misfit.hpp"
+
+namespace twinmap {
+
+/// Points (u x n) of parameters in their units to coordinates, and back.
+Eigen::MatrixXd toCoordinates(const LogCoordinates& coordinates, const Eigen::MatrixXd& points);
+Eigen::MatrixXd toParameters(const LogCoordinates& coordinates, const Eigen::MatrixXd& at);
+
+/// The misfits of all measurements, and the surface that they make. plain: of LogCoordinates.
+class ProblemSurface {
+ public:
+  explicit ProblemSurface(const PosteriorProblem& problem, const std::vector<Eigen::Index>& plain = {})
+      : coordinates_(problem.unknown, plain),
+        prior_(problem.unknown, problem.priors),
+        surface_(makeParts(problem), coordinates_, prior_) {}
+
+  MisfitSurface& upd() { return surface_; }
+  const LogCoordinates& getCoordinates() const { return coordinates_; }
+  const Prior& getPrior() const { return prior_; }
+
+ private:
+  struct Part {
+    explicit Part(const MeasuredTrial& trial)
+        : box(trial.model->getUnknown(), {0, static_cast<Eigen::Index>(trial.model->getUnknown().size())},
+              trial.held),
+          misfit(*trial.simulator, *trial.model, box, trial.features) {}
+
+    const SearchBox box;
+    Misfit misfit;
+  };
+
+  std::vector<MeasuredPart> makeParts(const PosteriorProblem& problem);
+
+  const LogCoordinates coordinates_;
+  const Prior prior_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<SegmentedMisfit>> segmented_;
+  MisfitSurface surface_;
+};
+
+/// The same basins in the coordinates of another surface of the same problem: those that are one there,
+/// because a ridge is straight, once.
+std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const LogCoordinates& coordinates,
+                                 MisfitSurface& surface);
+
+}  // namespace twinmap

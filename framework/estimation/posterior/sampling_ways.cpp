@@ -1,0 +1,177 @@
+#include "framework/estimation/posterior/sampling_ways.hpp"
+
+#include <iterator>
+#include <memory>
+#include <numeric>
+
+#include "framework/estimation/posterior/draws/linear_posterior.hpp"
+#include "framework/estimation/posterior/posterior_modes.hpp"
+#include "framework/estimation/posterior/profile_likelihood.hpp"
+#include "framework/estimation/posterior/straight_ridge.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+std::string findObstacle(const PosteriorProblem& problem, MisfitSurface& surface, const Sampling& sampling) {
+  const std::vector<Basin>& basins = sampling.landscape.basins;
+  if (problem.drawn > kManyUnknown && !areOneBasin(surface, basins)) {
+    return "several minima of so many parameters explain the measurement, and only one is sampled";
+  }
+  // where the first round did, the posterior is what the linear models of the basins say
+  const bool is_adapted = sampling.drawn.rounds > 1 && problem.drawn == surface.getDimensions();
+  if (sampling.drawn.isReliable() && is_adapted &&
+      endTooEarly(surface, sampling.drawn.draws, basins.front().local.misfit)) {
+    return "the draws end where the measurement still fits";
+  }
+  return sampling.drawn.findObstacle();
+}
+
+std::vector<Index> listAll(const PosteriorProblem& problem) {
+  std::vector<Index> all(problem.unknown.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  return all;
+}
+
+/// Whether the response is nearer to linear in the parameters as they are than in their logarithms.
+bool isStraighterPlain(const BasinSearch& found, ProblemSurface& whole, ProblemSurface& plain,
+                       std::uint64_t seed) {
+  const std::vector<Basin> basins = convertBasins(found.basins, whole.getCoordinates(), plain.upd());
+  return calcNonlinearity(plain.upd(), basins.front(), seed) <
+         calcNonlinearity(whole.upd(), found.basins.front(), seed);
+}
+
+/// As findRidgeShape() says; of many parameters the logarithms, or all as they are, whichever is straighter.
+RidgeShape chooseShape(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                       std::uint64_t seed) {
+  if (problem.drawn <= kManyUnknown) {
+    return findRidgeShape(whole.upd(), found.basins.front());
+  }
+  ProblemSurface plain(problem, listAll(problem));
+  RidgeShape shape;
+  if (isStraighterPlain(found, whole, plain, seed)) {
+    shape.plain = listAll(problem);
+  }
+  return shape;
+}
+
+/// In the logarithms but for what the shape says.
+Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, const RidgeShape& shape,
+                      ProblemSurface& whole, const PosteriorDrawOptions& options) {
+  std::unique_ptr<ProblemSurface> straight;
+  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
+  if (!shape.plain.empty()) {
+    straight = std::make_unique<ProblemSurface>(problem, shape.plain);
+    sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), straight->upd());
+  }
+  MisfitSurface& surface = straight ? straight->upd() : whole.upd();
+  sampling.drawn = drawPosterior(surface, sampling.landscape, problem.drawn, options);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  sampling.simulations = straight ? surface.getSimulations() : 0;
+  return sampling;
+}
+
+/// What the basins on a ridge show to be identified (findRidges), with points of its floor where they are
+/// few.
+std::vector<Ridge> findRidgesOf(std::vector<Basin> basins, MisfitSurface& surface,
+                                const std::vector<ParameterSpec>& unknown) {
+  constexpr std::size_t kEnough = 6;
+  if (basins.size() < kEnough) {
+    std::vector<Basin> floors = followValleys(surface, basins).floors;
+    std::move(floors.begin(), floors.end(), std::back_inserter(basins));
+  }
+  const LogCoordinates& coordinates = surface.getCoordinates();
+  std::vector<MatrixXd> information;
+  MatrixXd points(coordinates.getCount(), static_cast<Index>(basins.size()));
+  for (std::size_t k = 0; k < basins.size(); ++k) {
+    const LocalSurface& local = basins[k].local;
+    const VectorXd per_width = 2.0 * coordinates.calcSlopes(local.at).cwiseInverse();
+    information.emplace_back(per_width.asDiagonal() * local.information * per_width.asDiagonal());
+    points.col(static_cast<Index>(k)) = coordinates.toParameters(local.at);
+  }
+  return findRidges(information, points, unknown);
+}
+
+/// Where the draws fall into several modes, looks whether the valleys between these connect them: at the end
+/// of a ridge draws are few, and seem to lie apart from the others.
+void connectModes(MisfitSurface& surface, Sampling& sampling) {
+  const importance::WeightedDraws& draws = sampling.drawn.draws;
+  Landscape& landscape = sampling.landscape;
+  if (sampling.obstacle.empty() &&
+      findModes(draws.points, draws.points, draws.weights, landscape.basins, landscape.valleys).size() > 1) {
+    landscape.valleys = followValleys(surface, landscape.basins);
+  }
+}
+
+/// With the sums that alone are determined in the place of parameters, if there are some; else not reliable.
+Sampling sampleSums(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                    const PosteriorDrawOptions& options) {
+  const std::vector<Ridge> ridges = findRidgesOf(found.basins, whole.upd(), problem.unknown);
+  const SumCoordinates sums(problem.unknown, ridges);
+  Sampling sampling;
+  sampling.obstacle = "no sums are known";
+  if (sums.isEmpty()) {
+    return sampling;
+  }
+  sampling.plain = SumCoordinates::listReplaced(problem.unknown, ridges);
+  ProblemSurface plain(problem, sampling.plain);
+  MisfitSurface& surface = plain.upd();
+  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.drawn = drawInSums(surface, sampling.landscape.basins, sums, options);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  connectModes(surface, sampling);
+  sampling.simulations = surface.getSimulations();
+  return sampling;
+}
+
+/// In the parameters as they are.
+Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
+                     const PosteriorDrawOptions& options) {
+  Sampling sampling;
+  sampling.plain = listAll(problem);
+  ProblemSurface plain(problem, sampling.plain);
+  MisfitSurface& surface = plain.upd();
+  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.drawn = drawAlongWalks(surface, sampling.landscape.basins, options);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  connectModes(surface, sampling);
+  sampling.simulations = surface.getSimulations();
+  return sampling;
+}
+
+}  // namespace
+
+bool mayBend(const PosteriorProblem& problem) {
+  return problem.drawn == static_cast<Index>(problem.unknown.size()) && problem.drawn <= kManyUnknown;
+}
+
+Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                         const PosteriorDrawOptions& options) {
+  const bool may_bend = mayBend(problem);
+  const RidgeShape shape = chooseShape(problem, found, whole, options.seed);
+  int simulations = 0;
+  if (may_bend && !shape.is_straight) {
+    Sampling in_sums = sampleSums(problem, found, whole, options);
+    if (in_sums.obstacle.empty()) {
+      return in_sums;
+    }
+    simulations += in_sums.simulations;
+  }
+  Sampling sampling = sampleBasins(problem, found, shape, whole, options);
+  sampling.simulations += simulations;
+  if (!sampling.obstacle.empty() && may_bend) {
+    Sampling walked = sampleWalks(problem, found, whole, options);
+    walked.simulations += sampling.simulations;
+    if (walked.obstacle.empty()) {
+      return walked;
+    }
+    sampling.simulations = walked.simulations;
+  }
+  return sampling;
+}
+
+}  // namespace twinmap

@@ -1,0 +1,71 @@
+#include "framework/estimation/posterior/draws/valley_places.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/estimation/posterior/draws/posterior_draws.hpp"
+#include "tests/framework/estimation/posterior/surface.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using testing::makeVector;
+using testing::Surface;
+
+TEST(ValleyPlaces, LieOnAllOfABentFloorWhereverItsDeepestPointIs) {
+  Surface banana(
+      2,
+      [](const VectorXd& x) {
+        return makeVector({0.05 * x[0], 8.0 * (x[1] - x[0] * x[0])});
+      },
+      testing::makeParameters(2, -1.0, 1.0), 0.1, makeVector({-1.0, 1.0}));
+  const MatrixXd places = findValleyPlaces(banana.surface, banana.makeBasins(makeVector({-1.0, 1.0})), 1);
+  EXPECT_LT(places.row(0).minCoeff(), -0.75);
+  EXPECT_GT(places.row(0).maxCoeff(), 0.75);
+  for (const auto& place : places.colwise()) {
+    EXPECT_NEAR(place[1], place[0] * place[0], 0.1 / 8.0);  // one standard deviation of the noise
+  }
+}
+
+TEST(ValleyPlaces, AreNoneThatDoNotFit) {
+  Surface known(
+      2, [](const VectorXd& x) { return VectorXd(x); }, testing::makeParameters(2, -1.0, 1.0), 0.01,
+      makeVector({0.3, 0.1}));
+  EXPECT_EQ(findValleyPlaces(known.surface, known.makeBasins(makeVector({0.3, 0.1})), 1).cols(), 0);
+}
+
+/// Two bent ridges that meet in a corner of six dimensions, where chi-square is least: draws about it alone
+/// look as good as those of all. Of x3, x4, x5 nothing is known but that they are rather 1 than -1:
+/// exp(-(1.5 - x)^2 s / 2) cut off at the bounds is the oracle.
+TEST(DrawsAlongWalks, LeaveACornerOfTheBox) {
+  constexpr double kNoise = 0.1, kWeak = 0.06;
+  Surface corner(
+      5,
+      [=](const VectorXd& x) {
+        return makeVector({2.0 * (x[0] - x[1] * x[3]), 2.0 * (x[2] - x[4] * x[5]), kWeak * x[3], kWeak * x[4],
+                           kWeak * x[5]});
+      },
+      testing::makeParameters(6, -1.0, 1.0), kNoise, makeVector({1.0, 1.0, 1.0, 1.0, 1.0, 1.0}));
+  const std::vector<Basin> basins = corner.makeBasins(VectorXd::Ones(6));
+  const importance::AdaptiveDraws drawn = drawAlongWalks(corner.surface, basins, {});
+  ASSERT_TRUE(drawn.isReliable());
+  const VectorXd mean = importance::calcMean(drawn.draws);
+  const MatrixXd covariance = importance::calcCovariance(drawn.draws);
+  double sum = 0.0, first = 0.0, second = 0.0;
+  for (double x = -0.9995; x < 1.0; x += 0.001) {
+    const double density = std::exp(-0.5 * std::pow(kWeak * (x - 1.0) / kNoise, 2));
+    sum += density;
+    first += density * x;
+    second += density * x * x;
+  }
+  const double expected = first / sum, stddev = std::sqrt(second / sum - expected * expected);
+  for (const Index j : {3, 4, 5}) {
+    EXPECT_NEAR(mean[j], expected, 0.25 * stddev) << j;
+    EXPECT_NEAR(std::sqrt(covariance(j, j)), stddev, 0.2 * stddev) << j;
+  }
+}
+
+}  // namespace
+}  // namespace twinmap
