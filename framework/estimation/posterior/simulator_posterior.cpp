@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <set>
 
 #include "framework/estimation/informativeness.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
@@ -49,9 +51,10 @@ class ProblemSurface {
   explicit ProblemSurface(const PosteriorProblem& problem, const std::vector<Index>& plain = {})
       : coordinates_(problem.unknown, plain),
         prior_(problem.unknown, problem.priors),
-        surface_(makeParts(problem), coordinates_, prior_) {}
+        surface_(makeParts(problem), coordinates_, prior_, mayRunSideBySide(problem)) {}
 
   MisfitSurface& upd() { return surface_; }
+  const MisfitSurface& get() const { return surface_; }
   const LogCoordinates& getCoordinates() const { return coordinates_; }
   const Prior& getPrior() const { return prior_; }
 
@@ -90,17 +93,11 @@ class ProblemSurface {
 
 /// The same basins in the coordinates of another surface of the same problem: those that are one there,
 /// because a ridge is straight, once.
-std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const LogCoordinates& coordinates,
-                                 MisfitSurface& surface) {
-  MatrixXd points(coordinates.getCount(), static_cast<Index>(basins.size()));
-  for (std::size_t k = 0; k < basins.size(); ++k) {
-    points.col(static_cast<Index>(k)) =
-        surface.getCoordinates().fromParameters(coordinates.toParameters(basins[k].local.at));
-  }
-  std::vector<LocalSurface> ends = surface.linearize(points);
-  const auto failed =
-      std::remove_if(ends.begin(), ends.end(), [](const LocalSurface& end) { return !end.simulated; });
-  ends.erase(failed, ends.end());
+std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const MisfitSurface& from,
+                                 const MisfitSurface& surface) {
+  std::vector<LocalSurface> ends;
+  std::transform(basins.begin(), basins.end(), std::back_inserter(ends),
+                 [&](const Basin& basin) { return surface.convert(basin.local, from); });
   return collectBasins(std::move(ends));
 }
 
@@ -161,36 +158,38 @@ std::vector<Index> listAll(const PosteriorProblem& problem) {
   return all;
 }
 
-/// Whether the response is nearer to linear in the parameters as they are than in their logarithms.
-bool isStraighterPlain(const BasinSearch& found, ProblemSurface& whole, ProblemSurface& plain,
-                       std::uint64_t seed) {
-  const std::vector<Basin> basins = convertBasins(found.basins, whole.getCoordinates(), plain.upd());
-  return calcNonlinearity(plain.upd(), basins.front(), seed) <
-         calcNonlinearity(whole.upd(), found.basins.front(), seed);
-}
+/// The shape of the best basin, and its nonlinearity in these coordinates where that was compared.
+struct ChosenShape : RidgeShape {
+  std::optional<double> nonlinearity;
+};
 
-/// As findRidgeShape() says; of many parameters the logarithms, or all as they are, whichever is straighter.
-RidgeShape chooseShape(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                       std::uint64_t seed) {
+/// As findRidgeShape() says; of many parameters the logarithms, or all as they are, whichever make the
+/// response nearer to linear.
+ChosenShape chooseShape(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                        std::uint64_t seed) {
   if (problem.drawn <= kManyUnknown) {
-    return findRidgeShape(whole.upd(), found.basins.front());
+    return {findRidgeShape(whole.upd(), found.basins.front()), {}};
   }
   ProblemSurface plain(problem, listAll(problem));
-  RidgeShape shape;
-  if (isStraighterPlain(found, whole, plain, seed)) {
+  const std::vector<Basin> basins = convertBasins(found.basins, whole.get(), plain.get());
+  const double as_they_are = calcNonlinearity(plain.upd(), basins.front(), seed);
+  const double in_logarithms = calcNonlinearity(whole.upd(), found.basins.front(), seed);
+  ChosenShape shape;
+  shape.nonlinearity = std::min(as_they_are, in_logarithms);
+  if (as_they_are < in_logarithms) {
     shape.plain = listAll(problem);
   }
   return shape;
 }
 
 /// In the logarithms but for what the shape says.
-Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, const RidgeShape& shape,
+Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, const ChosenShape& shape,
                       ProblemSurface& whole, const PosteriorDrawOptions& options) {
   std::unique_ptr<ProblemSurface> straight;
-  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
+  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight, shape.nonlinearity}, {}, {}, 0};
   if (!shape.plain.empty()) {
     straight = std::make_unique<ProblemSurface>(problem, shape.plain);
-    sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), straight->upd());
+    sampling.landscape.basins = convertBasins(found.basins, whole.get(), straight->upd());
   }
   MisfitSurface& surface = straight ? straight->upd() : whole.upd();
   sampling.drawn = drawPosterior(surface, sampling.landscape, problem.drawn, options);
@@ -233,7 +232,7 @@ Sampling sampleSums(const PosteriorProblem& problem, const BasinSearch& found, P
   sampling.plain = SumCoordinates::listReplaced(problem.unknown, ridges);
   ProblemSurface plain(problem, sampling.plain);
   MisfitSurface& surface = plain.upd();
-  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);
   sampling.drawn = drawInSums(surface, sampling.landscape.basins, sums, options);
   sampling.obstacle = findObstacle(problem, surface, sampling);
   sampling.simulations = surface.getSimulations();
@@ -247,7 +246,7 @@ Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, 
   sampling.plain = listAll(problem);
   ProblemSurface plain(problem, sampling.plain);
   MisfitSurface& surface = plain.upd();
-  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);
   sampling.drawn = drawAlongWalks(surface, sampling.landscape.basins, options);
   sampling.obstacle = findObstacle(problem, surface, sampling);
   sampling.simulations = surface.getSimulations();
@@ -259,7 +258,7 @@ Sampling sample(const PosteriorProblem& problem, const BasinSearch& found, Probl
                 const PosteriorDrawOptions& options) {
   const bool may_bend =
       problem.drawn == static_cast<Index>(problem.unknown.size()) && problem.drawn <= kManyUnknown;
-  const RidgeShape shape = chooseShape(problem, found, whole, options.seed);
+  const ChosenShape shape = chooseShape(problem, found, whole, options.seed);
   int simulations = 0;
   if (may_bend && !shape.is_straight) {
     Sampling in_sums = sampleSums(problem, found, whole, options);
@@ -305,6 +304,15 @@ void setProfiles(const PosteriorProblem& problem, ProblemSurface& whole, Simulat
 }
 
 }  // namespace
+
+bool mayRunSideBySide(const PosteriorProblem& problem) {
+  std::set<const Simulator*> simulators;
+  for (const MeasuredTrial& trial : problem.trials) {
+    simulators.insert(trial.simulator);
+  }
+  return static_cast<Index>(problem.unknown.size()) > kManyUnknown &&
+         simulators.size() == problem.trials.size();
+}
 
 bool SimulatorPosterior::isExplained() const {
   return degrees > 0.0 && chi_square < calcChiSquareLimit(degrees);
