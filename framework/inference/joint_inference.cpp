@@ -9,10 +9,14 @@
 
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
+#include "framework/estimation/run_tasks.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
+#include "framework/simulation/simulator_team.hpp"
 #include "framework/simulation/team_simulator.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -30,6 +34,26 @@ constexpr int kDrawsAlone = 128;
 /// With more unknown parameters than these, those of single recordings are integrated out: importance
 /// sampling is good for some ten dimensions.
 constexpr Index kMaxDrawn = 8;
+
+/// The minimum of the sum of the recordings' quadratic misfits about their own minima, each over what it
+/// alone leaves unknown: nearly that of all together. The prior counts in each, which moves it by little.
+VectorXd combineMinima(const PosteriorProblem& problem, const std::vector<RecordingInference>& alone,
+                       const VectorXd& base) {
+  const LogCoordinates coordinates(problem.unknown);
+  const Index all = base.size();
+  MatrixXd information = kHalfWidthInformation * MatrixXd::Identity(all, all);
+  VectorXd descent = VectorXd::Zero(all);
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    const std::vector<Index>& own = problem.trials[k].unknown;
+    VectorXd point = base;
+    point(own) = alone[k].posterior.best;
+    const VectorXd at = coordinates.fromParameters(point);
+    information(own, own) += alone[k].posterior.information;
+    descent(own) += alone[k].posterior.information * at(own);
+  }
+  const VectorXd minimum = linalg::solvePositiveDefinite(information, descent);
+  return coordinates.toParameters(minimum.cwiseMax(-1.0).cwiseMin(1.0));
+}
 
 /// Starts of the joint search: what each recording alone found for the machine, beside what the others alone
 /// found for themselves; and the mean of all, weighted by their information.
@@ -55,7 +79,9 @@ MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<Recording
       weight += own;
     }
   }
-  if (weight.minCoeff() > 0.0) {
+  if (problem.drawn > kManyUnknown) {
+    starts.insert(starts.begin(), combineMinima(problem, alone, base));
+  } else if (weight.minCoeff() > 0.0) {
     starts.push_back(base);
     starts.back().head(shared) = sum.cwiseQuotient(weight);
   }
@@ -192,7 +218,7 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
   options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
   const bool has_many = static_cast<Index>(getParameters().size()) > kManyUnknown;
   options_.draws = has_many ? std::min(draws, kDrawsAlone) : draws;
-  joint_options_.search.scouts = has_many ? 1 : kOwnStarts;
+  joint_options_.search.scouts = has_many ? 0 : kOwnStarts;
   joint_options_.search.starts = 2 * kOwnStarts;
   joint_options_.search.max_batches = 1;
 }
@@ -247,35 +273,51 @@ MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
   return trial;
 }
 
-RecordingInference JointInferrer::inferAlone(const Recording& recording) const {
-  const Member& member = follow(recording);
-  const std::vector<ParameterSpec>& unknown = member.simulator->getUnknown();
-  const auto u = static_cast<Index>(unknown.size());
-  RecordingInference alone{recording.label, {}, {}};
-  alone.inferred.source = recording.table->source;
-  alone.inferred.start = member.reader->getStart(*recording.table, recording.start);
-  const PosteriorProblem problem{
-      unknown, member.reader->getExperiment().model.priors, {makeTrial(recording)}, u};
-  alone.posterior = samplePosterior(problem, MatrixXd(u, 0), options_);
-  alone.inferred.posterior = member.simulator->makeEstimate(problem.trials.front(), alone.posterior);
+std::vector<RecordingInference> JointInferrer::inferAlone(const std::vector<Recording>& recordings,
+                                                          const std::vector<MeasuredTrial>& trials) const {
+  std::vector<RecordingInference> alone(recordings.size());
+  std::vector<PosteriorProblem> problems;
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const Member& member = follow(recordings[k]);
+    const std::vector<ParameterSpec>& unknown = member.simulator->getUnknown();
+    problems.push_back({unknown,
+                        member.reader->getExperiment().model.priors,
+                        {trials[k]},
+                        static_cast<Index>(unknown.size())});
+    alone[k].label = recordings[k].label;
+    alone[k].inferred.source = recordings[k].table->source;
+    alone[k].inferred.start = member.reader->getStart(*recordings[k].table, recordings[k].start);
+  }
+  const int threads = countThreads();
+  const bool side_by_side =
+      recordings.size() >= static_cast<std::size_t>(threads) || mayRunSideBySide(problems.front());
+  runTasks(side_by_side ? threads : 1, recordings.size(), [&](std::size_t k) {
+    alone[k].posterior = samplePosterior(problems[k], MatrixXd(problems[k].drawn, 0), options_);
+  });
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    alone[k].inferred.posterior =
+        follow(recordings[k]).simulator->makeEstimate(trials[k], alone[k].posterior);
+  }
   return alone;
 }
 
-PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& recordings) const {
+PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& recordings,
+                                            std::vector<MeasuredTrial> trials) const {
   PosteriorProblem problem;
   problem.unknown = getParameters();
   problem.priors = members_.front().reader->getExperiment().model.priors;
   const auto shared = static_cast<Index>(problem.unknown.size());
-  for (const Recording& recording : recordings) {
-    MeasuredTrial trial = makeTrial(recording);
+  for (std::size_t k = 0; k < recordings.size(); ++k) {
+    const Recording& recording = recordings[k];
+    MeasuredTrial& trial = trials[k];
     const std::vector<ParameterSpec>& own = find(recording.trial).simulator->getUnknown();
     for (Index j = shared; j < static_cast<Index>(own.size()); ++j) {
       trial.unknown[static_cast<std::size_t>(j)] = static_cast<Index>(problem.unknown.size());
       problem.unknown.push_back(own[static_cast<std::size_t>(j)]);
       problem.unknown.back().name.text = recording.label + "." + problem.unknown.back().name.text;
     }
-    problem.trials.push_back(std::move(trial));
   }
+  problem.trials = std::move(trials);
   const auto all = static_cast<Index>(problem.unknown.size());
   problem.drawn = all <= kMaxDrawn ? all : shared;
   return problem;
@@ -284,16 +326,23 @@ PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& record
 JointInference JointInferrer::infer(const std::vector<Recording>& recordings) const {
   followed_.clear();
   JointInference inferred;
+  std::vector<std::unique_ptr<Simulator>> simulators;
+  std::vector<MeasuredTrial> trials;
   for (const Recording& recording : recordings) {
-    inferred.alone.push_back(inferAlone(recording));
-    inferred.simulations += inferred.alone.back().posterior.simulations;
-    if (!(inferred.alone.back().posterior.degrees > 0.0)) {
-      inferred.joint.message = recording.label + " cannot be simulated anywhere within the bounds";
+    trials.push_back(makeTrial(recording));
+    simulators.push_back(trials.back().simulator->clone());  // for a thread of its own
+    trials.back().simulator = simulators.back().get();
+  }
+  inferred.alone = inferAlone(recordings, trials);
+  for (const RecordingInference& one : inferred.alone) {
+    inferred.simulations += one.posterior.simulations;
+    if (!(one.posterior.degrees > 0.0)) {
+      inferred.joint.message = one.label + " cannot be simulated anywhere within the bounds";
       return inferred;
     }
   }
   const auto shared = static_cast<Index>(getParameters().size());
-  const PosteriorProblem problem = makeProblem(recordings);
+  const PosteriorProblem problem = makeProblem(recordings, std::move(trials));
   inferred.joint = samplePosterior(problem, makeStarts(problem, inferred.alone, shared), joint_options_);
   inferred.simulations += inferred.joint.simulations;
   if (!(inferred.joint.degrees > 0.0)) {

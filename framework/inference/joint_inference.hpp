@@ -64,7 +64,7 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Ind
 ScatterEstimate combineScattered(const Eigen::VectorXd& values, const Eigen::VectorXd& stddevs);
 
 /// Infers one machine from several recordings together, each with an initial state, an offset ... (nuisance
-/// parameters) of its own, by simulation alone. For one thread.
+/// parameters) of its own, by simulation alone. For one thread, which OpenMP's others help.
 class JointInferrer {
  public:
   /// root: the experiment's tree, with trials or without; draws: of a round.
@@ -93,8 +93,11 @@ class JointInferrer {
   /// That of its trial, with the recording's times and excitation (MeasurementReader::follow).
   const Member& follow(const Recording& recording) const;
   MeasuredTrial makeTrial(const Recording& recording) const;
-  RecordingInference inferAlone(const Recording& recording) const;
-  PosteriorProblem makeProblem(const std::vector<Recording>& recordings) const;
+  /// trials: of the recordings (makeTrial), each with a simulator of its own.
+  std::vector<RecordingInference> inferAlone(const std::vector<Recording>& recordings,
+                                             const std::vector<MeasuredTrial>& trials) const;
+  PosteriorProblem makeProblem(const std::vector<Recording>& recordings,
+                               std::vector<MeasuredTrial> trials) const;
 
   std::vector<Member> members_;
   mutable std::map<std::string, Member> followed_;  // by the labels of the recordings that are inferred

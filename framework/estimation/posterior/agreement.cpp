@@ -7,6 +7,8 @@
 #include <stdexcept>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/run_tasks.hpp"
+#include "framework/simulation/simulator_team.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/optimization/box_quadratic.hpp"
 
@@ -158,8 +160,9 @@ double calcLargestProbability(double excess, const std::vector<PartInformation>&
 }  // namespace
 
 std::vector<PartInformation> linearizeParts(const PosteriorProblem& problem, const VectorXd& best) {
-  std::vector<PartInformation> parts;
-  for (const MeasuredTrial& trial : problem.trials) {
+  std::vector<PartInformation> parts(problem.trials.size());
+  runTasks(mayRunSideBySide(problem) ? countThreads() : 1, parts.size(), [&](std::size_t k) {
+    const MeasuredTrial& trial = problem.trials[k];
     const std::vector<ParameterSpec>& unknown = trial.model->getUnknown();
     const LogCoordinates coordinates(unknown);
     const Prior uniform({}, {});
@@ -173,8 +176,8 @@ std::vector<PartInformation> linearizeParts(const PosteriorProblem& problem, con
     if (!local.simulated) {
       throw std::runtime_error("the joint estimate cannot be simulated");
     }
-    parts.push_back({trial.unknown, local.information, local.descent});
-  }
+    parts[k] = {trial.unknown, local.information, local.descent};
+  });
   return parts;
 }
 

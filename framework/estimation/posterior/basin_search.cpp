@@ -246,7 +246,7 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
   scouts << hunt.takeStarts(options.scouts), given;
   hunt.search(scouts);
   while (hunt.isExplained() && !hunt.isConfirmed() && hunt.countTaken() < options.starts) {
-    hunt.search(hunt.takeStarts(std::min(options.scouts, options.starts - hunt.countTaken())));
+    hunt.search(hunt.takeStarts(std::clamp(options.scouts, 1, options.starts - hunt.countTaken())));
   }
   if (hunt.isExplained() && hunt.isConfirmed()) {
     hunt.probe();

@@ -7,6 +7,10 @@
 
 namespace twinmap {
 
+/// More unknown parameters than these are searched for and drawn by means of the prior: no mixture follows so
+/// many dimensions, and no starts cover them.
+constexpr Eigen::Index kManyUnknown = 16;
+
 /// A minimum of chi-square within the bounds.
 struct Basin {
   LocalSurface local;

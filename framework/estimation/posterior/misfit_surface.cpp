@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/simulation/simulator_team.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -53,6 +55,20 @@ double calcDegrees(const LocalSurface& surface) {
   return std::max(1.0, static_cast<double>(surface.residuals) - determined);
 }
 
+/// Of each of the points (u x n) of the part's own box.
+VectorXd calcPartLosses(const MeasuredPart& part, const MatrixXd& own) {
+  if (part.losses.empty()) {
+    return part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
+  }
+  return part.misfit->sumUp(own, [&](const MatrixXd& residuals) {
+    VectorXd losses(residuals.cols());
+    for (Index i = 0; i < residuals.cols(); ++i) {
+      losses[i] = part.losses[part.window].calc(residuals.col(i));
+    }
+    return losses;
+  });
+}
+
 }  // namespace
 
 int MisfitSurface::getSimulations() const {
@@ -90,6 +106,17 @@ MatrixXd MisfitSurface::toBox(const MatrixXd& points) const {
   return box;
 }
 
+void MisfitSurface::visitParts(const std::function<void(std::size_t part)>& visit) const {
+  runTasks(side_by_side_ ? countThreads() : 1, parts_.size(), visit);
+}
+
+std::vector<std::vector<LocalMisfit>> MisfitSurface::linearizeEach(const MatrixXd& box) {
+  std::vector<std::vector<LocalMisfit>> locals(parts_.size());
+  visitParts(
+      [&](std::size_t k) { locals[k] = parts_[k].misfit->linearizeAll(box(parts_[k].unknown, Eigen::all)); });
+  return locals;
+}
+
 std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
   const MatrixXd box = toBox(points);
   const Index u = points.rows();
@@ -101,10 +128,10 @@ std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
     surface.information = MatrixXd::Zero(u, u);
     surface.descent = VectorXd::Zero(u);
   }
-  for (const MeasuredPart& part : parts_) {
-    const std::vector<LocalMisfit> local = part.misfit->linearizeAll(box(part.unknown, Eigen::all));
+  const std::vector<std::vector<LocalMisfit>> locals = linearizeEach(box);
+  for (std::size_t k = 0; k < parts_.size(); ++k) {
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      addPart(local[i], part, surfaces[i]);
+      addPart(locals[k][i], parts_[k], surfaces[i]);
     }
   }
   for (LocalSurface& surface : surfaces) {
@@ -117,6 +144,22 @@ std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
     }
   }
   return surfaces;
+}
+
+LocalSurface MisfitSurface::convert(const LocalSurface& local, const MisfitSurface& from) const {
+  LocalSurface converted = local;
+  converted.at = coordinates_.fromParameters(from.coordinates_.toParameters(local.at));
+  if (!prior_.isUniform()) {
+    const PriorMisfit prior = from.linearizePrior(local.at);
+    converted.information -= prior.information;
+    converted.descent -= prior.descent;
+  }
+  const VectorXd slopes =
+      coordinates_.calcSlopes(converted.at).cwiseQuotient(from.coordinates_.calcSlopes(local.at));
+  converted.information = slopes.asDiagonal() * converted.information * slopes.asDiagonal();
+  converted.descent = slopes.cwiseProduct(converted.descent);
+  addPrior(converted);
+  return converted;
 }
 
 void MisfitSurface::addPrior(LocalSurface& surface) const {
@@ -149,20 +192,13 @@ PriorMisfit MisfitSurface::linearizePrior(const VectorXd& at) const {
 
 VectorXd MisfitSurface::calcLosses(const MatrixXd& points) {
   const MatrixXd box = toBox(points);
+  MatrixXd losses(points.cols(), static_cast<Index>(parts_.size()));
+  visitParts([&](std::size_t k) {
+    losses.col(static_cast<Index>(k)) = calcPartLosses(parts_[k], box(parts_[k].unknown, Eigen::all));
+  });
   VectorXd sums = VectorXd::Zero(points.cols());
-  for (const MeasuredPart& part : parts_) {
-    const MatrixXd own = box(part.unknown, Eigen::all);
-    if (part.losses.empty()) {
-      sums += part.misfit->evaluate(own) - kHalfWidthInformation * own.colwise().squaredNorm().transpose();
-      continue;
-    }
-    sums += part.misfit->sumUp(own, [&](const MatrixXd& residuals) {
-      VectorXd losses(residuals.cols());
-      for (Index i = 0; i < residuals.cols(); ++i) {
-        losses[i] = part.losses[part.window].calc(residuals.col(i));
-      }
-      return losses;
-    });
+  for (const auto& of_part : losses.colwise()) {
+    sums += of_part;
   }
   return sums;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "framework/estimation/log_coordinates.hpp"
@@ -38,12 +40,14 @@ struct MeasuredPart {
 };
 
 /// How well simulators explain one or several measurements of one machine, over the box of all unknown
-/// parameters in LogCoordinates. One thread.
+/// parameters in LogCoordinates. For one thread.
 class MisfitSurface {
  public:
   /// Coordinates and prior, of all unknown parameters, and what the parts point to must outlive the object.
-  MisfitSurface(std::vector<MeasuredPart> parts, const LogCoordinates& coordinates, const Prior& prior)
-      : parts_(std::move(parts)), coordinates_(coordinates), prior_(prior) {
+  /// side_by_side: whether parts are simulated each by a thread; none may share a simulator with another.
+  MisfitSurface(std::vector<MeasuredPart> parts, const LogCoordinates& coordinates, const Prior& prior,
+                bool side_by_side = false)
+      : parts_(std::move(parts)), coordinates_(coordinates), prior_(prior), side_by_side_(side_by_side) {
     for (MeasuredPart& part : parts_) {
       part.window = part.losses.empty() ? 0 : part.losses.size() - 1;
     }
@@ -61,8 +65,13 @@ class MisfitSurface {
 
   /// Points (u x n) in half-widths of the bounds, as the parts take them.
   Eigen::MatrixXd toBox(const Eigen::MatrixXd& points) const;
+  /// Of each part its misfit at all columns of `box` (toBox), with derivatives.
+  std::vector<std::vector<LocalMisfit>> linearizeEach(const Eigen::MatrixXd& box);
   /// At all columns of `points` (u x n), one batch of each part, with derivatives.
   std::vector<LocalSurface> linearize(const Eigen::MatrixXd& points);
+  /// What linearize() says where another surface of the same measurements has been linearised, in other
+  /// coordinates: nothing is simulated.
+  LocalSurface convert(const LocalSurface& local, const MisfitSurface& from) const;
   /// LocalSurface::misfit (n), infinite where a simulation fails; one batch of each part. After linearize().
   Eigen::VectorXd calcMisfits(const Eigen::MatrixXd& points);
   /// log of the posterior density (n) in these coordinates, but for a summand: normal noise, -infinity
@@ -78,12 +87,14 @@ class MisfitSurface {
   }
 
  private:
+  void visitParts(const std::function<void(std::size_t part)>& visit) const;
   Eigen::VectorXd calcLosses(const Eigen::MatrixXd& points);
   void addPrior(LocalSurface& surface) const;
 
   std::vector<MeasuredPart> parts_;
   const LogCoordinates& coordinates_;
   const Prior& prior_;
+  const bool side_by_side_;
 };
 
 }  // namespace twinmap

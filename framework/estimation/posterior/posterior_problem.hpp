@@ -33,4 +33,9 @@ struct PosteriorProblem {
   Eigen::Index drawn = 0;
 };
 
+/// Whether threads are better spent on whole trials: with more than kManyUnknown parameters a simulation
+/// takes long enough, and few of them side by side leave a thread's lanes empty. No two may share a
+/// simulator.
+bool mayRunSideBySide(const PosteriorProblem& problem);
+
 }  // namespace twinmap

@@ -1,6 +1,8 @@
 #include "framework/estimation/posterior/problem_surface.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 namespace twinmap {
 
@@ -38,18 +40,21 @@ std::vector<MeasuredPart> ProblemSurface::makeParts(const PosteriorProblem& prob
   return parts;
 }
 
-std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const LogCoordinates& coordinates,
-                                 MisfitSurface& surface) {
-  MatrixXd points(coordinates.getCount(), static_cast<Index>(basins.size()));
-  for (std::size_t k = 0; k < basins.size(); ++k) {
-    points.col(static_cast<Index>(k)) =
-        surface.getCoordinates().fromParameters(coordinates.toParameters(basins[k].local.at));
-  }
-  std::vector<LocalSurface> ends = surface.linearize(points);
-  const auto failed =
-      std::remove_if(ends.begin(), ends.end(), [](const LocalSurface& end) { return !end.simulated; });
-  ends.erase(failed, ends.end());
+std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const MisfitSurface& from,
+                                 const MisfitSurface& surface) {
+  std::vector<LocalSurface> ends;
+  std::transform(basins.begin(), basins.end(), std::back_inserter(ends),
+                 [&](const Basin& basin) { return surface.convert(basin.local, from); });
   return collectBasins(std::move(ends));
+}
+
+bool mayRunSideBySide(const PosteriorProblem& problem) {
+  std::set<const Simulator*> simulators;
+  for (const MeasuredTrial& trial : problem.trials) {
+    simulators.insert(trial.simulator);
+  }
+  return static_cast<Index>(problem.unknown.size()) > kManyUnknown &&
+         simulators.size() == problem.trials.size();
 }
 
 }  // namespace twinmap

@@ -20,9 +20,10 @@ class ProblemSurface {
   explicit ProblemSurface(const PosteriorProblem& problem, const std::vector<Eigen::Index>& plain = {})
       : coordinates_(problem.unknown, plain),
         prior_(problem.unknown, problem.priors),
-        surface_(makeParts(problem), coordinates_, prior_) {}
+        surface_(makeParts(problem), coordinates_, prior_, mayRunSideBySide(problem)) {}
 
   MisfitSurface& upd() { return surface_; }
+  const MisfitSurface& get() const { return surface_; }
   const LogCoordinates& getCoordinates() const { return coordinates_; }
   const Prior& getPrior() const { return prior_; }
 
@@ -48,7 +49,7 @@ class ProblemSurface {
 
 /// The same basins in the coordinates of another surface of the same problem: those that are one there,
 /// because a ridge is straight, once.
-std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const LogCoordinates& coordinates,
-                                 MisfitSurface& surface);
+std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const MisfitSurface& from,
+                                 const MisfitSurface& surface);
 
 }  // namespace twinmap

@@ -1,8 +1,10 @@
 #include "framework/estimation/posterior/sampling_ways.hpp"
 
+#include <algorithm>
 #include <iterator>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
@@ -37,36 +39,38 @@ std::vector<Index> listAll(const PosteriorProblem& problem) {
   return all;
 }
 
-/// Whether the response is nearer to linear in the parameters as they are than in their logarithms.
-bool isStraighterPlain(const BasinSearch& found, ProblemSurface& whole, ProblemSurface& plain,
-                       std::uint64_t seed) {
-  const std::vector<Basin> basins = convertBasins(found.basins, whole.getCoordinates(), plain.upd());
-  return calcNonlinearity(plain.upd(), basins.front(), seed) <
-         calcNonlinearity(whole.upd(), found.basins.front(), seed);
-}
+/// The shape of the best basin, and its nonlinearity in these coordinates where that was compared.
+struct ChosenShape : RidgeShape {
+  std::optional<double> nonlinearity;
+};
 
-/// As findRidgeShape() says; of many parameters the logarithms, or all as they are, whichever is straighter.
-RidgeShape chooseShape(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                       std::uint64_t seed) {
+/// As findRidgeShape() says; of many parameters the logarithms, or all as they are, whichever make the
+/// response nearer to linear.
+ChosenShape chooseShape(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                        std::uint64_t seed) {
   if (problem.drawn <= kManyUnknown) {
-    return findRidgeShape(whole.upd(), found.basins.front());
+    return {findRidgeShape(whole.upd(), found.basins.front()), {}};
   }
   ProblemSurface plain(problem, listAll(problem));
-  RidgeShape shape;
-  if (isStraighterPlain(found, whole, plain, seed)) {
+  const std::vector<Basin> basins = convertBasins(found.basins, whole.get(), plain.get());
+  const double as_they_are = calcNonlinearity(plain.upd(), basins.front(), seed);
+  const double in_logarithms = calcNonlinearity(whole.upd(), found.basins.front(), seed);
+  ChosenShape shape;
+  shape.nonlinearity = std::min(as_they_are, in_logarithms);
+  if (as_they_are < in_logarithms) {
     shape.plain = listAll(problem);
   }
   return shape;
 }
 
 /// In the logarithms but for what the shape says.
-Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, const RidgeShape& shape,
+Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, const ChosenShape& shape,
                       ProblemSurface& whole, const PosteriorDrawOptions& options) {
   std::unique_ptr<ProblemSurface> straight;
-  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight}, {}, {}, 0};
+  Sampling sampling{shape.plain, {found.basins, {}, shape.is_straight, shape.nonlinearity}, {}, {}, 0};
   if (!shape.plain.empty()) {
     straight = std::make_unique<ProblemSurface>(problem, shape.plain);
-    sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), straight->upd());
+    sampling.landscape.basins = convertBasins(found.basins, whole.get(), straight->upd());
   }
   MisfitSurface& surface = straight ? straight->upd() : whole.upd();
   sampling.drawn = drawPosterior(surface, sampling.landscape, problem.drawn, options);
@@ -120,7 +124,7 @@ Sampling sampleSums(const PosteriorProblem& problem, const BasinSearch& found, P
   sampling.plain = SumCoordinates::listReplaced(problem.unknown, ridges);
   ProblemSurface plain(problem, sampling.plain);
   MisfitSurface& surface = plain.upd();
-  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);
   sampling.drawn = drawInSums(surface, sampling.landscape.basins, sums, options);
   sampling.obstacle = findObstacle(problem, surface, sampling);
   connectModes(surface, sampling);
@@ -135,7 +139,7 @@ Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, 
   sampling.plain = listAll(problem);
   ProblemSurface plain(problem, sampling.plain);
   MisfitSurface& surface = plain.upd();
-  sampling.landscape.basins = convertBasins(found.basins, whole.getCoordinates(), surface);
+  sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);
   sampling.drawn = drawAlongWalks(surface, sampling.landscape.basins, options);
   sampling.obstacle = findObstacle(problem, surface, sampling);
   connectModes(surface, sampling);
@@ -152,7 +156,7 @@ bool mayBend(const PosteriorProblem& problem) {
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                          const PosteriorDrawOptions& options) {
   const bool may_bend = mayBend(problem);
-  const RidgeShape shape = chooseShape(problem, found, whole, options.seed);
+  const ChosenShape shape = chooseShape(problem, found, whole, options.seed);
   int simulations = 0;
   if (may_bend && !shape.is_straight) {
     Sampling in_sums = sampleSums(problem, found, whole, options);

@@ -21,6 +21,7 @@ constexpr double kFirstDamping = 1e-2, kMinDamping = 1e-9, kMaxDamping = 1e8, kR
 constexpr double kHeldLinear = 0.75;      // of the gain that the linear model says
 constexpr double kLongestStep = 0.5;      // half of a coordinate's bounds
 constexpr double kConvergedGain = 0.01;   // of chi-square: a tenth of a standard deviation
+constexpr double kGainOfMany = 0.1;       // of many parameters, whose chi-square varies by some ten
 constexpr double kFirstDiagonal = 1e-12;  // of the largest: what the response does not depend on stays
 constexpr double kFarAbove = 50.0;        // of the best chi-square: e^-25 of its density
 
@@ -200,10 +201,11 @@ void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
   if (moved.empty()) {
     return;
   }
+  const double converged = surface_.getDimensions() > kManyUnknown ? kGainOfMany : kConvergedGain;
   std::vector<LocalSurface> reached = surface_.linearize(to);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     Search& search = *moved[i];
-    search.active = reached[i].simulated && predictGain(reached[i], search.held) > kConvergedGain;
+    search.active = reached[i].simulated && predictGain(reached[i], search.held) > converged;
     if (reached[i].simulated) {
       search.local = std::move(reached[i]);
       settle(search);

@@ -53,21 +53,38 @@ void visitExponents(Index size, int most, const std::function<void(const VectorX
   }
 }
 
+bool hasOneSign(const Bounds& bounds) {
+  return bounds.lower > 0.0 || bounds.upper < 0.0;
+}
+
 bool isPrimitive(const VectorXi& exponents) {
   int divisor = 0;
   for (const int exponent : exponents) {
     divisor = std::gcd(divisor, exponent);
   }
-  return divisor == 1 && exponents[0] > 0;
+  return divisor == 1;
+}
+
+/// Whether no divisor may be 0.
+bool isDefined(const VectorXi& exponents, const std::vector<ParameterSpec>& parameters) {
+  for (Index j = 0; j < exponents.size(); ++j) {
+    if (exponents[j] < 0 && !hasOneSign(parameters[static_cast<std::size_t>(j)].bounds)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Of a product and its inverse the one whose first exponent is positive, or the only one that is defined.
+bool isPreferred(const VectorXi& exponents, const std::vector<ParameterSpec>& parameters) {
+  const bool starts_upright =
+      *std::find_if(exponents.begin(), exponents.end(), [](int e) { return e != 0; }) > 0;
+  return isDefined(exponents, parameters) && (starts_upright || !isDefined(-exponents, parameters));
 }
 
 /// Sums of powers and of terms are as hard to read as they are long; divisions slightly more.
 double calcProductComplexity(const VectorXi& exponents) {
   return exponents.cwiseAbs().sum() + 0.1 * static_cast<double>((exponents.array() < 0).count());
-}
-
-bool hasOneSign(const Bounds& bounds) {
-  return bounds.lower > 0.0 || bounds.upper < 0.0;
 }
 
 /// One of 1, 2, 3, 4 and their inverses, where the number is near one; else its first three digits.
@@ -233,9 +250,9 @@ std::vector<Candidate> findProducts(const FlatDirections& flat, const std::vecto
           const Index parameter =
               flat.parameters[static_cast<std::size_t>(chosen[static_cast<std::size_t>(k)])];
           all[parameter] = exponents[k];
-          if (exponents[k] < 0 && !hasOneSign(parameters[static_cast<std::size_t>(parameter)].bounds)) {
-            return;
-          }
+        }
+        if (!isPreferred(all, parameters)) {
+          return;
         }
         Candidate candidate{{{all}, {1.0}, 0.0}, calcProductComplexity(all)};
         candidate.combination.residual = calcResidual(candidate.combination, flat, parameters);

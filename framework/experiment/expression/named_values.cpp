@@ -1,10 +1,24 @@
 #include "framework/experiment/expression/named_values.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "framework/base/text/nearest_name.hpp"
 
 namespace twinmap {
+namespace {
+
+/// The nearest name or, where none is near, all there are, but for those that a reader would not go through.
+std::string suggestKnown(const std::string& name, const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 24;
+  if (std::string nearest = suggestName(name, names); !nearest.empty() || names.empty()) {
+    return nearest;
+  }
+  const std::vector<std::string> first(names.begin(), names.begin() + std::min(names.size(), kMost));
+  return " (known: " + listNames(first) + (names.size() > kMost ? ", ...)" : ")");
+}
+
+}  // namespace
 
 int DefinedNames::addName(const std::string& name) {
   const int place = static_cast<int>(names_.size());
@@ -36,7 +50,7 @@ BoundExpression DefinedNames::bind(const Expression& expression) const {
       node.operands[0] = findPlace(name);
       if (node.operands[0] < 0) {
         throw ExperimentError(expression.where, expression.text,
-                              "uses the unknown name '" + name + "'" + suggestName(name, getNames()));
+                              "uses the unknown name '" + name + "'" + suggestKnown(name, getNames()));
       }
     } else {
       for (int& operand : node.operands) {

@@ -29,7 +29,7 @@ class DefinedNames {
   const std::vector<std::string>& getNames() const { return names_; }
 
   /// Parses `expression` against the names. Throws ExperimentError (with its location) for a syntax error and
-  /// for an unknown name (with the nearest known one).
+  /// for an unknown name (with the nearest known one, or all).
   BoundExpression bind(const Expression& expression) const;
 
   /// Lets expressions call a function of one operand. Throws std::invalid_argument if it exists already.

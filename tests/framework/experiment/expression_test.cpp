@@ -120,6 +120,9 @@ TEST(Expression, ErrorsNamePlaceValueRuleAndCharacter) {
       getError(values, "2 * stifness"),
       "f.yaml:3:7: system.springs[0].stiffness: '2 * stifness' uses the unknown name 'stifness'; did you "
       "mean 'stiffness'?");
+  EXPECT_EQ(
+      getError(values, "2 * v"),
+      "f.yaml:3:7: system.springs[0].stiffness: '2 * v' uses the unknown name 'v' (known: stiffness, x)");
   EXPECT_NE(getError(values, "stiffness = 3").find("must not assign"), std::string::npos);
   const std::vector<std::pair<std::string, std::string>> wrong{
       {"", "a number, a name or '(' is missing at character 1"},

@@ -154,7 +154,7 @@ BasinSearchOptions limitSearch(BasinSearchOptions options, Index drawn) {
 }
 
 MatrixXd addMedian(const MatrixXd& given, const Prior& prior, Index unknown, Index drawn) {
-  if (drawn <= kManyUnknown) {
+  if (drawn <= kManyUnknown || given.cols() > 0) {
     return given;
   }
   MatrixXd more = given;

@@ -11,8 +11,6 @@ namespace twinmap {
 /// With more unknown parameters than these the posterior of one basin is first tried as one whose response is
 /// linear: mixtures that follow any shape need some ten draws a dimension.
 constexpr Eigen::Index kFewUnknown = 8;
-/// Where more than these are drawn it is tried so alone: no mixture follows so many dimensions.
-constexpr Eigen::Index kManyUnknown = 16;
 
 /// The posterior about the only basin, of any number of parameters. Draws come from the posterior that it
 /// would be if the response were linear about the basin's minimum: a normal likelihood, but the prior and the
@@ -43,8 +41,8 @@ bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins)
 /// they are spread.
 BasinSearchOptions limitSearch(BasinSearchOptions options, Eigen::Index drawn);
 
-/// Points to search from (u x n, or none at all), with the prior's median where more than kManyUnknown of the
-/// u parameters are drawn.
+/// Points to search from (u x n, or none at all): where more than kManyUnknown of the u parameters are drawn
+/// and none is given, the prior's median.
 Eigen::MatrixXd addMedian(const Eigen::MatrixXd& given, const Prior& prior, Eigen::Index unknown,
                           Eigen::Index drawn);
 

@@ -141,15 +141,18 @@ AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, I
 }
 
 /// Of many parameters about a bent response, where its bend is more than weights make good.
-AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Basin& basin, bool has_many,
+AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, bool has_many,
                            const PosteriorDrawOptions& options) {
   constexpr int kMostRounds = 4;         // where no mixture follows
   constexpr double kNearlyLinear = 0.7;  // variance of log weights: half of the draws count
+  const Basin& basin = landscape.basins.front();
   if (!has_many) {
     return sampleLinearized(surface, basin, options.draws, 1, options.seed);
   }
   std::optional<ResponseCurvature> curvature;
-  if (!(calcNonlinearity(surface, basin, options.seed) < kNearlyLinear)) {
+  const double nonlinearity =
+      landscape.nonlinearity ? *landscape.nonlinearity : calcNonlinearity(surface, basin, options.seed);
+  if (!(nonlinearity < kNearlyLinear)) {
     curvature = ResponseCurvature::measure(surface, basin);
   }
   return sampleLinearized(surface, basin, options.draws, kMostRounds, options.seed,
@@ -185,7 +188,7 @@ AdaptiveDraws drawPosterior(MisfitSurface& surface, Landscape& landscape, Index 
                             const PosteriorDrawOptions& options) {
   const bool has_many = kept > kManyUnknown;
   if (has_many || (surface.getDimensions() > kFewUnknown && areOneBasin(surface, landscape.basins))) {
-    AdaptiveDraws drawn = drawAboutOne(surface, landscape.basins.front(), has_many, options);
+    AdaptiveDraws drawn = drawAboutOne(surface, landscape, has_many, options);
     const bool is_good = drawn.isReliable() && drawn.effective_sample_size >= kEnough * options.draws &&
                          drawn.pareto_shape <= importance::AdaptiveOptions().good_pareto_shape;
     if (has_many || is_good) {

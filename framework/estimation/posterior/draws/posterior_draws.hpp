@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "framework/estimation/posterior/valley.hpp"
@@ -17,7 +18,8 @@ struct PosteriorDrawOptions {
 struct Landscape {
   std::vector<Basin> basins;
   Valleys valleys;
-  bool is_straight = true;  // RidgeShape
+  bool is_straight = true;               // RidgeShape
+  std::optional<double> nonlinearity{};  // calcNonlinearity() of the first basin, where it is known
 };
 
 /// The basins as they are seen in the first `drawn` coordinates alone.

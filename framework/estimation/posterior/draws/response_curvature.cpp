@@ -54,8 +54,10 @@ std::vector<LinearResponse> linearizeResponses(MisfitSurface& surface, const Mat
   const auto count = static_cast<std::size_t>(points.cols());
   const MatrixXd box = surface.toBox(points);
   std::vector<LinearResponse> responses(count, {VectorXd(0), MatrixXd(0, axes.cols())});
-  for (const MeasuredPart& part : surface.getParts()) {
-    const std::vector<LocalMisfit> local = part.misfit->linearizeAll(box(part.unknown, Eigen::all));
+  const std::vector<std::vector<LocalMisfit>> locals = surface.linearizeEach(box);
+  for (std::size_t k = 0; k < locals.size(); ++k) {
+    const MeasuredPart& part = surface.getParts()[k];
+    const std::vector<LocalMisfit>& local = locals[k];
     for (std::size_t i = 0; i < count; ++i) {
       if (!local[i].status.ok || !local[i].jacobian.allFinite()) {
         return {};

@@ -98,6 +98,15 @@ TEST(IdentifiedCombinations, NameTwoQuotientsOfThree) {
   EXPECT_EQ(listExpressions(ridges, parameters), (Names{"k / m", "k / c"}));
 }
 
+/// Of a free motion, with damping that may be none: it cannot divide, so that d / m is upside down.
+TEST(IdentifiedCombinations, NameAQuotientOfWhatMayBeNone) {
+  const std::vector<ParameterSpec> parameters{makeParameter("m", "", 1, 2), makeParameter("k", "", 5, 15),
+                                              makeParameter("d", "", 0, 3)};
+  const auto ridges =
+      findIn(parameters, [](const VectorXd& x) { return Eigen::Vector2d(x[1] / x[0], x[2] / x[0]).eval(); });
+  EXPECT_EQ(listExpressions(ridges, parameters), (Names{"m / k", "d / m"}));
+}
+
 TEST(IdentifiedCombinations, NameRatiosOfAChain) {
   const std::vector<ParameterSpec> parameters{
       makeParameter("m_1", "kg", 1, 2), makeParameter("m_2", "kg", 1, 3), makeParameter("m_3", "kg", 0.5, 2)};

@@ -1,0 +1,92 @@
+"""How joint estimates of several trials hold: machines of parameters drawn from the prior, each trial recorded once.
+
+    bench/joint.py TWINMAP FILE.yaml                     # 10 machines: the seven-joint arm takes a minute or two each
+    bench/joint.py TWINMAP FILE.yaml --first 11 --machines 20
+
+FILE has `trials:`. A line a machine: statuses, intervals that hold the truth, the root mean square and the largest of the
+errors in standard deviations (about 1 and below 4 where they are right, whatever the prior leaves unknown), time, and the
+effective sample sizes of the recordings alone; then the share of all intervals that hold.
+"""
+import argparse
+import json
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import yaml
+
+
+def draw(parameter, rng):
+    """From its prior; without one, within its bounds."""
+    (kind, prior), *_ = [*parameter.get("prior", {}).items(), ("uniform", parameter.get("bounds"))]
+    if kind == "lognormal":
+        return float(prior["median"]) * float(prior["factor"]) ** rng.standard_normal()
+    if kind == "normal":
+        return float(prior["mean"]) + float(prior["stddev"]) * rng.standard_normal()
+    if kind == "uniform":
+        return rng.uniform(*map(float, prior))
+    sys.exit(f"priors of kind {kind} are not drawn here")
+
+
+def record(twinmap, file, trials, truth, seed, folder):
+    """A recording of each trial, as arguments of infer."""
+    arguments = []
+    for i, trial in enumerate(trials):
+        path = folder / f"{trial}.csv"
+        values = [f"parameters.{name}={value!r}" for name, value in truth.items()]
+        command = [
+            twinmap,
+            "simulate",
+            file,
+            f"trial={trial}",
+            "--noise",
+            "--csv",
+            path,
+            f"seed={10 * seed + i}",
+            *values,
+        ]
+        subprocess.run(command, check=True)
+        arguments += ["--trial", f"{trial}={path}"]
+    return arguments
+
+
+def describe(seed, estimate, truth, seconds):
+    found = estimate["parameters"]
+    held = sum(found[name]["lower"] <= value <= found[name]["upper"] for name, value in truth.items())
+    errors = np.array([(found[name]["mean"] - value) / found[name]["sd"] for name, value in truth.items()])
+    alone = ", ".join(f"{trial['posterior']['effective_sample_size']:.0f}" for trial in estimate["trials"])
+    line = f"{seed}: {', '.join(estimate['statuses'])}; {held} of {len(truth)} hold; errors {np.sqrt(np.mean(errors**2)):.2f}"
+    print(f"{line}, at most {np.abs(errors).max():.2f} sd; {seconds:.0f} s; alone worth {alone} draws", flush=True)
+    return held
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("twinmap")
+    parser.add_argument("file")
+    parser.add_argument("--machines", type=int, default=10)
+    parser.add_argument("--first", type=int, default=1, help="seed of the first machine")
+    arguments = parser.parse_args()
+    spec = yaml.safe_load(Path(arguments.file).read_text())
+    held = of = 0
+    for seed in range(arguments.first, arguments.first + arguments.machines):
+        rng = np.random.default_rng(seed)
+        truth = {name: draw(parameter, rng) for name, parameter in spec["parameters"].items()}
+        with tempfile.TemporaryDirectory(prefix="joint") as folder:
+            recordings = record(arguments.twinmap, arguments.file, spec["trials"], truth, seed, Path(folder))
+            start = time.perf_counter()
+            command = [arguments.twinmap, "infer", arguments.file, *recordings, "--json"]
+            done = subprocess.run(command, capture_output=True, text=True)
+        estimate = json.loads(done.stdout.splitlines()[-1]) if done.stdout else {}
+        if "parameters" not in estimate:
+            sys.exit(f"{seed}: {done.stderr}")
+        held += describe(seed, estimate, truth, time.perf_counter() - start)
+        of += len(truth)
+        print(f"  {held / of:.3f} of {of} intervals hold", flush=True)
+
+
+if __name__ == "__main__":
+    main()
