@@ -252,6 +252,22 @@ TEST(SimulatorPosterior, FindsTheDeepestOfManyBasins) {
   }
 }
 
+TEST(SimulatorPosterior, ShowsTheFloorOfItsValleyWhereTooFewDrawsStandForIt) {
+  Problem problem(
+      10, [](const VectorXd& x) { return VectorXd::Constant(10, x[0] * x[1]); },
+      testing::makeParameters(2, 0.5, 5.0), 0.3);
+  const VectorXd features = problem.measure(makeVector({1.0, 2.0}), 0.3);
+  const SimulatorPosterior posterior = sample(problem, features, 8);  // 8 rounds of 16 at most
+  ASSERT_FALSE(posterior.isReliable());
+  ASSERT_TRUE(posterior.isExplained());
+  ASSERT_GE(posterior.places.cols(), 5);
+  const Eigen::ArrayXd first = posterior.places.row(0).array();
+  EXPECT_GT(first.maxCoeff() / first.minCoeff(), 2.0);
+  for (const auto& place : posterior.places.colwise()) {
+    EXPECT_NEAR(place[0] * place[1], features.mean(), 5.0 * 0.3 / std::sqrt(10.0));  // chi-square 25 above
+  }
+}
+
 TEST(SimulatorPosterior, HoldsKnownInputs) {
   Problem problem(
       5, [](const VectorXd& x) { return VectorXd::Constant(5, x[0] + x[1]); },
