@@ -256,9 +256,11 @@ Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, 
 
 /// The straightest way first: along a bent ridge mixtures may find draws of a part of it good enough.
 Sampling sample(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                const PosteriorDrawOptions& options) {
-  const bool may_bend =
-      problem.drawn == static_cast<Index>(problem.unknown.size()) && problem.drawn <= kManyUnknown;
+                const SimulatorPosteriorOptions& options) {
+  const LocalSurface& best = found.basins.front().local;
+  const bool is_spared = options.spares_misfit && !(best.chi_square < calcChiSquareLimit(best.degrees));
+  const bool may_bend = !is_spared && problem.drawn == static_cast<Index>(problem.unknown.size()) &&
+                        problem.drawn <= kManyUnknown;
   const RidgeShape shape = chooseShape(problem, found, whole, options.seed);
   int simulations = 0;
   if (may_bend && !shape.is_straight) {
