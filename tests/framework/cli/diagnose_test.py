@@ -38,6 +38,33 @@ class Diagnose(FolderTestCase):
         self.assertTrue(found["complete"])
         self.assertIn("None of", self.diagnose(CART, self.sound))
 
+    def test_explains_trials_together(self):
+        chirp = "{F: {unit: N, chirps: [{amplitude: %s, start_frequency: 0.5, end_frequency: 5, end: 4}]}}"
+        trials = "".join(f"  {n}: {{excitation: {chirp % a}}}\n" for n, a in [("soft", 1), ("hard", 4)])
+        file = self.folder / "trials.yaml"
+        file.write_text(CART.read_text() + "\ntrials:\n" + trials)
+        recordings = []
+        for trial in ("soft", "hard"):
+            drag = "system.force_laws[0].force=F - k3*x^3 - 0.4*abs(x_dot)*x_dot"
+            path = self.folder / f"{trial}.csv"
+            result = call("simulate", file, "--noise", "--csv", path, f"trial={trial}", drag)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            recordings += ["--trial", f"{trial}={path}"]
+        corrected = self.folder / "with_drag.yaml"
+        found = json.loads(self.diagnose(file, *recordings, "--json", "--out", corrected))
+        self.assertEqual(found["found"], ["drag.x"])
+        inferred = call("infer", corrected, *recordings, "--json")
+        self.assertEqual(inferred.returncode, 0, inferred.stderr)
+        self.assertIn("drag.x", self.diagnose(file))  # blind spots of both
+        for arguments, words in [
+            ([file, recordings[1].split("=")[1]], "which trial does it record"),
+            ([CART, *recordings[:2]], "has no trials"),
+            ([file, *recordings, "--page", self.folder / "p.html"], "one trial"),
+        ]:
+            refused = call("diagnose", *arguments)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertIn(words, refused.stderr)
+
     def blow(self, seed):
         """A recording of a cart in gusts: random steps of a force that forgets itself within .2 s."""
         numbers = random.Random(seed)
