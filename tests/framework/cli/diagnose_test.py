@@ -148,14 +148,13 @@ class Diagnose(FolderTestCase):
         self.assertNotIn("model_mismatch", inferred["statuses"])
         self.assertIn("coulomb_x", inferred["parameters"])
 
-    def test_noise_of_unknown_size_has_no_held_out_test(self):
+    def test_noise_of_unknown_size_is_that_of_the_fit(self):
         unknown = self.folder / "unknown.yaml"
         unknown.write_text(CART.read_text().replace("stddev: {x: 1e-4}", "stddev: {x: unknown}"))
-        result = call("validate", unknown, self.sound, "--against", self.rubbing)
-        self.assertEqual(result.returncode, 2, result.stdout)
-        self.assertIn(
-            "has noise of unknown size, without which nobody knows how well a prediction must fit", result.stderr
-        )
+        again = self.simulate("again.csv", "seed=2")
+        self.assertEqual(call("validate", unknown, self.sound, "--against", again).returncode, 0)
+        rubbing = call("validate", unknown, self.sound, "--against", self.rubbing)
+        self.assertEqual(rubbing.returncode, 3, rubbing.stderr)
 
     def test_says_what_a_test_is_blind_to(self):
         spots = {spot["term"]: spot for spot in json.loads(self.diagnose(CART, "--json"))["blind_spots"]}
