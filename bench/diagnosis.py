@@ -5,6 +5,7 @@ Usage: bench/diagnosis.py STUDY [--terms N] [--tests N] [--nothing N] --out FILE
 
 STUDY is the program diagnosis_study (bench/framework/diagnosis). Of each mechanism, N terms that its recordings can show,
 spread evenly over the list of candidates, are missing from the model in turn, by 1.2 to 30 times chi-square; and nothing is.
+Then a random force acts on each coordinate in turn.
 """
 import argparse
 import re
@@ -24,13 +25,16 @@ MECHANISMS = [
 ]
 LINE = re.compile(
     r"(?P<term>\S+)\s+(?P<tests>\d+) chi2/n\s+(?P<ratio>\S+) first\s+(?P<first>\d+) tied\s+(?P<tied>\d+) "
-    r"nothing\s+(?P<nothing>\d+) \| held (?P<before>[\d. ]*) -> (?P<after>[\d. ]*) \| worst z \S+ -> \S+ \| (?P<seconds>\S+) s"
+    r"nothing\s+(?P<nothing>\d+) alike (?P<alike_named>\d+)/(?P<alike>\d+) second (?P<resolved>\d+)/(?P<advised>\d+) "
+    r"\| held (?P<before>[\d. ]*) -> (?P<after>[\d. ]*) \| worst z \S+ -> \S+ \| (?P<seconds>\S+) s"
 )
 HEAD = """# What a model lacks, measured
 
 Written by `bench/diagnosis.py STUDY`: machines drawn from the bounds that have one term more than the model, of 1.2 to 30 times its
 chi-square, each measured once and diagnosed ([how](../how-to/find-what-a-model-lacks.md)). First or tied: the term is named, alone or among
-those that one test does not tell apart. Coverage: share of the true parameters within their 95 % intervals, of the model alone and after
+those that one test does not tell apart. Alike: of the cases in which some other term does the same to within what evidence could tell,
+those in which the missing one is named among several. Second test: of those whose advice is one of another amplitude, those in which
+both together name the missing term alone. Random force: named as a force on its coordinate. Coverage: share of the true parameters within their 95 % intervals, of the model alone and after
 the diagnosis. Time: of a processor, a diagnosis with both posteriors.
 
 """
@@ -49,7 +53,7 @@ def run(study, file, terms, tests, seed=1):
 
 def choose(names, count):
     """Spread over the list, ambiguous ones included."""
-    names = [name for name in names if name != "none"]
+    names = [name for name in names if name != "none" and not name.startswith("process.")]
     return [names[int((i + 0.5) * len(names) / count)] for i in range(min(count, len(names)))]
 
 
@@ -67,12 +71,17 @@ def coverage(rows, key):
     return sum(int(r["tests"]) * mean(r[key]) for r in rows) / max(1, tests)
 
 
-def make_row(name, missing, nothing):
+def of(named, all_of, rows):
+    return f"{sum(int(r[named]) for r in rows)} of {sum(int(r[all_of]) for r in rows)}"
+
+
+def make_row(name, missing, nothing, processes):
     tied, tests = share(missing, "tied")
     none, sound = share(nothing, "nothing")
     seconds = sum(int(r["tests"]) * float(r["seconds"]) for r in missing) / max(1, tests)
     return (
-        f"| {name} | {tied} of {tests} | {none} of {sound} | {coverage(missing, 'before'):.2f} | "
+        f"| {name} | {tied} of {tests} | {none} of {sound} | {of('alike_named', 'alike', missing)} | "
+        f"{of('resolved', 'advised', missing)} | {of('tied', 'tests', processes)} | {coverage(missing, 'before'):.2f} | "
         f"{coverage(missing, 'after'):.2f} | {coverage(nothing, 'after'):.2f} | {seconds:.1f} |\n"
     )
 
@@ -85,18 +94,21 @@ def main():
     parser.add_argument("--nothing", type=int, default=12)
     parser.add_argument("--out", type=Path, required=True, help="the page, Markdown")
     arguments = parser.parse_args()
-    table = "| mechanism | first or tied | nothing found where nothing is missing | coverage before | after | nothing missing | s |\n|---|--:|--:|--:|--:|--:|--:|\n"
-    all_missing, all_nothing, missed = [], [], []
+    table = "| mechanism | first or tied | nothing found where nothing is missing | alike | second test | random force | coverage before | after | nothing missing | s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+    all_missing, all_nothing, all_processes, missed = [], [], [], []
     for file in MECHANISMS:
         names = [row["term"] for row in run(arguments.study, file, [], 0)]
         missing = run(arguments.study, file, choose(names, arguments.terms), arguments.tests)
         nothing = run(arguments.study, file, ["none"], arguments.nothing)
-        table += make_row(Path(file).stem, missing, nothing)
+        forces = [name for name in names if name.startswith("process.")]
+        processes = run(arguments.study, file, forces, arguments.tests)
+        table += make_row(Path(file).stem, missing, nothing, processes)
+        all_processes += processes
         all_missing += missing
         all_nothing += nothing
         missed += [f"{Path(file).stem} {r['term']}" for r in missing if int(r["tied"]) < int(r["tests"])]
         print(table.splitlines()[-1], flush=True)
-    table += make_row("all", all_missing, all_nothing)
+    table += make_row("all", all_missing, all_nothing, all_processes)
     named = "\nNot named each time: " + ", ".join(missed) + ".\n" if missed else ""
     arguments.out.write_text(HEAD + table + named)
 

@@ -23,6 +23,13 @@ AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<T
 /// coefficient, on either side. The parameters have the names of makeParameterName().
 AugmentedExperiment addTerm(const ExperimentSpec& experiment, const TermCandidate& candidate, double largest);
 
+/// Throws ExperimentError where a term has changed the machine in each trial otherwise, as one that begins
+/// with the trial's own initial state: a file has one machine for all.
+void requireSharedSystem(const ExperimentSpec& experiment);
+
+/// Of a parameter of the machine, in all trials.
+void setBounds(std::size_t parameter, const Bounds& bounds, ExperimentSpec& experiment);
+
 /// "drag_x" of "drag.x", or with digits behind it where that is taken.
 std::string makeParameterName(const ModelSpec& model, const std::string& term);
 

@@ -12,6 +12,7 @@
 #include "framework/diagnosis/term_exchange.hpp"
 #include "framework/diagnosis/term_sets.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
@@ -29,8 +30,11 @@ constexpr std::size_t kFittedTerms = 6;
 /// Of the level, for pairs of terms: singles have the rest.
 constexpr double kPairShare = 0.1;
 
+/// Without the searches and draws that only a posterior to be believed is worth.
 ExplainedFit explain(const RecordingsProblem& problem, const MatrixXd& given,
-                     const SimulatorPosteriorOptions& options) {
+                     SimulatorPosteriorOptions options) {
+  options.search.settles = true;
+  options.spares_misfit = true;
   ExplainedFit fit{samplePosterior(problem.get(), given, options), {}};
   if (!(fit.posterior.degrees > 0.0)) {
     throw std::runtime_error(fit.posterior.message);
@@ -307,11 +311,24 @@ class Diagnoser {
   Index shared_ = 0;                           // parameters of the machine, before any term
 };
 
-NoiseSpec sizeNoiseBy(const ExplainedFit& fit, const ExperimentSpec& experiment, const NoiseSpec& used,
-                      const RecordedFeatures& recordings) {
-  const std::vector<FeatureInfo> infos = RecordingsProblem(experiment, recordings).listInfos();
-  return sizeNoise(experiment.noise, {used, fit.posterior.residual, fit.posterior.degrees, infos},
-                   recordings.layout.output_names);
+/// Gives `sized`, which was fitted, the unknown sizes of noise that the fit shows.
+void sizeNoiseBy(const ExplainedFit& fit, const ExperimentSpec& stated, const RecordedFeatures& recordings,
+                 ExperimentSpec& sized) {
+  const std::vector<FeatureInfo> infos = RecordingsProblem(stated, recordings).listInfos();
+  const std::vector<std::string> outputs = recordings.listOutputs(stated);
+  const auto size = [&](const ExperimentSpec& from, const std::vector<std::string>& names,
+                        ExperimentSpec& to) {
+    to.noise = sizeNoise(from.noise, {to.noise, fit.posterior.residual, fit.posterior.degrees, infos}, names);
+  };
+  for (std::size_t t = 0; t < sized.trials.size(); ++t) {
+    const std::string prefix = nameInTrial(sized.trials[t].name, "");
+    std::vector<std::string> own;
+    for (const std::string& output : outputs) {
+      own.push_back(output.rfind(prefix, 0) == 0 ? output.substr(prefix.size()) : "");
+    }
+    size(stated.trials[t].experiment, own, sized.trials[t].experiment);
+  }
+  size(stated, outputs, sized);
 }
 
 /// With the noise that is left by what was found: as long as more is found.
@@ -320,7 +337,7 @@ void diagnoseAgain(const ExperimentSpec& experiment, const RecordedFeatures& rec
   constexpr int kRounds = 4;  // at most three terms are found, mostly at once
   for (int round = 0; round < kRounds && diagnosis.found > 0; ++round) {
     const std::vector<std::string> before = diagnosis.listTerms();
-    sized.noise = sizeNoiseBy(diagnosis.after, experiment, sized.noise, recordings);
+    sizeNoiseBy(diagnosis.after, experiment, recordings, sized);
     diagnosis = Diagnoser(recordings, options).run(sized);
     if (diagnosis.listTerms() == before) {
       return;
@@ -371,15 +388,14 @@ Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& rec
   if (hasUnknownNoise(experiment.noise)) {
     const RecordingsProblem problem(experiment, recordings);
     const MatrixXd none(static_cast<Index>(problem.getUnknown().size()), 0);
-    sized.noise =
-        sizeNoiseBy(explain(problem, none, options.posterior), experiment, experiment.noise, recordings);
+    sizeNoiseBy(explain(problem, none, options.posterior), experiment, recordings, sized);
   }
   Diagnosis diagnosis = Diagnoser(recordings, options).run(sized);
   if (hasUnknownNoise(experiment.noise)) {
     diagnoseAgain(experiment, recordings, options, sized, diagnosis);
   }
   diagnosis.noise = sized.noise;
-  diagnosis.corrected.noise = experiment.noise;
+  copyNoise(experiment, diagnosis.corrected);
   return diagnosis;
 }
 

@@ -128,6 +128,24 @@ void setPredictiveTest(const VectorXd& residual, const MatrixXd& jacobian, const
 
 }  // namespace
 
+ExperimentSpec sizeNoiseByFit(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                              const SimulatorPosteriorOptions& options) {
+  ExperimentSpec sized = experiment;
+  if (!hasUnknownNoise(experiment.noise)) {
+    return sized;
+  }
+  const RecordingsProblem problem(experiment, recordings);
+  const MatrixXd none(static_cast<Index>(problem.getUnknown().size()), 0);
+  const SimulatorPosterior fit = samplePosterior(problem.get(), none, options);
+  if (fit.best.size() == 0) {
+    throw std::runtime_error(fit.message);
+  }
+  sized.noise =
+      sizeNoise(experiment.noise, {experiment.noise, fit.residual, fit.degrees, problem.listInfos()},
+                recordings.listOutputs(experiment));
+  return sized;
+}
+
 KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                           const SimulatorPosteriorOptions& options) {
   requireKnownNoise(experiment, "how well a prediction must fit");

@@ -13,6 +13,11 @@ struct KnownMachine {
   Eigen::MatrixXd covariance;  ///< p x p
 };
 
+/// The experiment with noise of unknown size as large as the residual that its best fit leaves of recordings:
+/// what is predicted with it is held to what was fitted. Throws as inferMachine() does. Cost: its cost.
+ExperimentSpec sizeNoiseByFit(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                              const SimulatorPosteriorOptions& options);
+
 /// From recordings, by their posterior, or by the linear model at its best point where no posterior is
 /// reliable. Throws std::runtime_error where nothing can be simulated. Cost: that of samplePosterior().
 KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatures& recordings,

@@ -34,7 +34,7 @@ CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& rec
     const VectorXd residual = problem.linearize(fit.point).residual;
     current.experiment.noise =
         sizeNoise(experiment.noise, {experiment.noise, residual, current.degrees, problem.listInfos()},
-                  recording.layout.output_names);
+                  recording.listOutputs(experiment));
     current.chi_square =
         RecordingsProblem(current.experiment, recording).linearize(fit.point).residual.squaredNorm();
   }

@@ -1,11 +1,15 @@
 #include "framework/diagnosis/recorded_problem.hpp"
 
+#include <algorithm>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 
+#include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/measured_signals.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/estimation/posterior/search_team.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap {
 
@@ -43,36 +47,57 @@ void addStarts(const RefinementModel& model, Index first, std::vector<Index>& st
 
 using Simulators = std::vector<std::unique_ptr<const SimulatorRefiner>>;
 
-Simulators makeSimulators(const ExperimentSpec& experiment, const RecordedFeatures& recordings) {
-  Simulators simulators;
-  if (recordings.excitations.empty()) {
-    simulators.push_back(std::make_unique<const SimulatorRefiner>(experiment, recordings.layout));
+/// Which simulator each recording has: that of its trial, or one with its own excitation.
+std::vector<std::size_t> assignSimulators(const ExperimentSpec& experiment,
+                                          const RecordedFeatures& recordings, Simulators& simulators) {
+  std::vector<std::size_t> assigned;
+  std::map<std::size_t, std::size_t> of_trials;
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    const bool has_own = !recordings.excitations.empty() && !recordings.excitations[k].empty();
+    const auto known = of_trials.find(recordings.getTrial(k));
+    if (!has_own && known != of_trials.end()) {
+      assigned.push_back(known->second);
+      continue;
+    }
+    assigned.push_back(simulators.size());
+    ExperimentSpec own = recordings.getExperiment(experiment, k);
+    if (has_own) {
+      copyMeasuredSignals(recordings.excitations[k], own.model);
+    } else {
+      of_trials[recordings.getTrial(k)] = simulators.size();
+    }
+    simulators.push_back(std::make_unique<const SimulatorRefiner>(own, recordings.getLayout(k)));
+    simulators.back()->requireNoise();
   }
-  for (const std::vector<SignalSpec>& excitation : recordings.excitations) {
-    ExperimentSpec own = experiment;
-    copyMeasuredSignals(excitation, own.model);
-    simulators.push_back(std::make_unique<const SimulatorRefiner>(own, recordings.layout));
-  }
-  simulators.front()->requireNoise();
-  return simulators;
+  return assigned;
 }
 
-PosteriorProblem makeRecordedProblem(const Simulators& simulators, const ExperimentSpec& experiment,
-                                     const RecordedFeatures& recordings) {
+/// What a recording's own unknown parameter is called among those of all.
+std::string nameOwn(const std::string& name, const ExperimentSpec& experiment,
+                    const RecordedFeatures& recordings, std::size_t k) {
+  const std::string own =
+      recordings.trials.empty() ? name : nameInTrial(experiment.trials[recordings.trials[k]].name, name);
+  const bool is_one_of_several =
+      recordings.trials.empty()
+          ? recordings.features.size() > 1
+          : std::count(recordings.trials.begin(), recordings.trials.end(), recordings.trials[k]) > 1;
+  return is_one_of_several ? own + "[" + std::to_string(k + 1) + "]" : own;
+}
+
+PosteriorProblem makeRecordedProblem(const Simulators& simulators, const std::vector<std::size_t>& assigned,
+                                     const ExperimentSpec& experiment, const RecordedFeatures& recordings) {
   PosteriorProblem problem;
   problem.unknown = experiment.model.parameters;
   problem.priors = experiment.model.priors;
-  const std::vector<ParameterSpec>& own = simulators.front()->getUnknown();
   const std::size_t shared = problem.unknown.size();
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
-    const SimulatorRefiner& simulator = *simulators[simulators.size() > 1 ? k : 0];
-    MeasuredTrial trial = simulator.makeTrial(recordings.features[k], recordings.known);
+    const SimulatorRefiner& simulator = *simulators[assigned[k]];
+    const std::vector<ParameterSpec>& own = simulator.getUnknown();
+    MeasuredTrial trial = simulator.makeTrial(recordings.features[k], recordings.getKnown(k));
     for (std::size_t j = shared; j < own.size(); ++j) {
       trial.unknown[j] = static_cast<Index>(problem.unknown.size());
       problem.unknown.push_back(own[j]);
-      if (recordings.features.size() > 1) {
-        problem.unknown.back().name.text += "[" + std::to_string(k + 1) + "]";
-      }
+      problem.unknown.back().name.text = nameOwn(own[j].name.text, experiment, recordings, k);
     }
     problem.trials.push_back(std::move(trial));
   }
@@ -82,11 +107,60 @@ PosteriorProblem makeRecordedProblem(const Simulators& simulators, const Experim
   return problem;
 }
 
+/// Of one recording after the other.
+std::vector<std::size_t> countOutputs(const RecordedFeatures& recordings) {
+  std::vector<std::size_t> counts;
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    counts.push_back(recordings.getLayout(k).getOutputCount());
+  }
+  return counts;
+}
+
+std::vector<std::optional<double>> listWindows(const std::vector<double>& starts) {
+  std::vector<std::optional<double>> windows(starts.begin(), starts.end());
+  if (windows.empty()) {
+    windows.emplace_back(std::nullopt);
+  }
+  return windows;
+}
+
+/// Setups of all trials, no recordings yet.
+RecordedFeatures setUpTrials(const ExperimentSpec& combined, const std::vector<KnownValue>& known) {
+  RecordedFeatures recordings;
+  for (const TrialExperiment& trial : combined.trials) {
+    recordings.setups.push_back(
+        {makeLayout(trial.experiment), collectKnown(trial.experiment.model.inputs, known)});
+  }
+  return recordings;
+}
+
+std::size_t findTrial(const ExperimentSpec& combined, const std::string& name) {
+  std::vector<std::string> names;
+  for (const TrialExperiment& trial : combined.trials) {
+    if (trial.name == name) {
+      return names.size();
+    }
+    names.push_back(trial.name);
+  }
+  throwUnknownTrial(name, names);
+}
+
+/// The recording behind those that are there, of a trial.
+void appendOfTrial(const RecordedFeatures& one, std::size_t trial, RecordedFeatures& recordings) {
+  recordings.features.push_back(one.features.front());
+  recordings.excitations.push_back(one.excitations.empty() ? std::vector<SignalSpec>()
+                                                           : one.excitations.front());
+  recordings.trials.push_back(trial);
+}
+
 }  // namespace
 
 RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& recordings) const {
-  RecordedFeatures selected{layout, {}, known};
+  RecordedFeatures selected{layout, {}, known, {}, setups};
   for (const std::size_t k : recordings) {
+    if (!trials.empty()) {
+      selected.trials.push_back(trials[k]);
+    }
     selected.features.push_back(features[k]);
     if (!excitations.empty()) {
       selected.excitations.push_back(excitations[k]);
@@ -103,6 +177,16 @@ RecordedFeatures RecordedFeatures::leaveOut(std::size_t recording) const {
     }
   }
   return select(others);
+}
+
+std::vector<std::string> RecordedFeatures::listOutputs(const ExperimentSpec& experiment) const {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    for (const std::string& name : getLayout(k).output_names) {
+      names.push_back(trials.empty() ? name : nameInTrial(experiment.trials[trials[k]].name, name));
+    }
+  }
+  return names;
 }
 
 void append(const RecordedFeatures& more, RecordedFeatures& recordings) {
@@ -134,10 +218,7 @@ RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vect
                                 const std::vector<double>& starts, const std::vector<KnownValue>& known) {
   RecordedFeatures recordings{
       reader.getLayout(), {}, collectKnown(reader.getExperiment().model.inputs, known)};
-  std::vector<std::optional<double>> windows(starts.begin(), starts.end());
-  if (windows.empty()) {
-    windows.emplace_back(std::nullopt);
-  }
+  const std::vector<std::optional<double>> windows = listWindows(starts);
   for (const std::string& file : files) {
     const Table table = readTable(file, reader.listColumns(), MissingCells::kKeep);
     for (const std::optional<double>& start : windows) {
@@ -147,30 +228,72 @@ RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vect
   return recordings;
 }
 
+RecordedFeatures readTrials(const ExperimentSpec& combined, const std::vector<TrialFile>& files,
+                            const std::vector<double>& starts, const std::vector<KnownValue>& known) {
+  RecordedFeatures recordings = setUpTrials(combined, known);
+  for (const TrialFile& one : files) {
+    const std::size_t trial = findTrial(combined, one.trial);
+    const MeasurementReader reader(combined.trials[trial].experiment);
+    const Table table = readTable(one.file, reader.listColumns(), MissingCells::kKeep);
+    for (const std::optional<double>& start : listWindows(starts)) {
+      appendOfTrial(readRecording(reader, table, start, recordings.setups[trial].known), trial, recordings);
+    }
+  }
+  return recordings;
+}
+
+RecordedFeatures makeEmptyRecordings(const ExperimentSpec& experiment, const std::vector<KnownValue>& known) {
+  const auto makeEmpty = [](const ExperimentSpec& one, const ResponseLayout& layout) -> VectorXd {
+    return VectorXd::Zero(makeExtractor(one, layout).getFeatureCount());
+  };
+  if (experiment.trials.empty()) {
+    const ResponseLayout layout = makeLayout(experiment);
+    return {layout, {makeEmpty(experiment, layout)}, collectKnown(experiment.model.inputs, known)};
+  }
+  RecordedFeatures recordings = setUpTrials(experiment, known);
+  for (std::size_t t = 0; t < experiment.trials.size(); ++t) {
+    recordings.features.push_back(makeEmpty(experiment.trials[t].experiment, recordings.setups[t].layout));
+    recordings.trials.push_back(t);
+  }
+  return recordings;
+}
+
 SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                               const VectorXd& point, std::size_t k) {
   const auto p = static_cast<Index>(experiment.model.parameters.size());
-  const auto own = static_cast<Index>(experiment.model.nuisance.size());
-  SingleRecording single{recordings.select({k}), VectorXd(p + own)};
-  single.point << point.head(p), point.segment(p + static_cast<Index>(k) * own, own);
+  Index before = p;
+  for (std::size_t i = 0; i < k; ++i) {
+    before += static_cast<Index>(recordings.getExperiment(experiment, i).model.nuisance.size());
+  }
+  SingleRecording single{recordings.getExperiment(experiment, k), recordings.select({k}), {}};
+  single.recording.layout = recordings.getLayout(k);
+  single.recording.known = recordings.getKnown(k);
+  single.recording.setups.clear();
+  single.recording.trials.clear();
+  const auto own = static_cast<Index>(single.experiment.model.nuisance.size());
+  single.point.resize(p + own);
+  single.point << point.head(p), point.segment(before, own);
   return single;
 }
 
 RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
-    : simulators_(makeSimulators(experiment, recordings)),
-      problem_(makeRecordedProblem(simulators_, experiment, recordings)) {}
+    : outputs_(countOutputs(recordings)) {
+  const std::vector<std::size_t> assigned = assignSimulators(experiment, recordings, simulators_);
+  problem_ = makeRecordedProblem(simulators_, assigned, experiment, recordings);
+}
 
 std::vector<FeatureInfo> RecordingsProblem::listInfos() const {
   std::vector<FeatureInfo> infos;
-  const int outputs = static_cast<int>(getSimulator().getSimulator().getLayout().getOutputCount());
+  int before = 0;
   for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
     const RefinementModel& model = *problem_.trials[k].model;
     for (const Index i : model.getWhole().features) {
       infos.push_back(model.getExtractor().getInfos()[static_cast<std::size_t>(i)]);
       if (infos.back().output >= 0) {
-        infos.back().output += static_cast<int>(k) * outputs;
+        infos.back().output += before;
       }
     }
+    before += static_cast<int>(outputs_[k]);
   }
   return infos;
 }

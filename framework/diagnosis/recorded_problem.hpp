@@ -7,16 +7,39 @@
 
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/refiner.hpp"
+#include "framework/inference/trial_reader.hpp"
 
 namespace twinmap {
 
-/// Recordings of one machine, as features of an experiment.
+/// What recordings of one trial have in common.
+struct TrialSetup {
+  ResponseLayout layout;
+  Eigen::VectorXd known;  ///< of the inputs
+};
+
+/// Recordings of one machine, as features of an experiment, or of the trials that it combines.
 struct RecordedFeatures {
   ResponseLayout layout;
   std::vector<Eigen::VectorXd> features;  ///< of each recording, NaN where missing
   Eigen::VectorXd known;                  ///< of the inputs
-  /// Of each recording, its measured tables; empty where all have the experiment's.
+  /// Of each recording, its measured tables; none where they are the experiment's. Empty where all are.
   std::vector<std::vector<SignalSpec>> excitations{};
+  std::vector<TrialSetup> setups{};   ///< of the experiment's trials in the place of layout and known
+  std::vector<std::size_t> trials{};  ///< of each recording, the number of its trial; empty without trials
+
+  std::size_t getTrial(std::size_t recording) const { return trials.empty() ? 0 : trials[recording]; }
+  const ResponseLayout& getLayout(std::size_t recording) const {
+    return trials.empty() ? layout : setups[trials[recording]].layout;
+  }
+  const Eigen::VectorXd& getKnown(std::size_t recording) const {
+    return trials.empty() ? known : setups[trials[recording]].known;
+  }
+  /// The experiment of a recording's trial.
+  const ExperimentSpec& getExperiment(const ExperimentSpec& experiment, std::size_t recording) const {
+    return trials.empty() ? experiment : experiment.trials[trials[recording]].experiment;
+  }
+  /// The outputs of one recording after the other, by trial ("free.x") where there are trials.
+  std::vector<std::string> listOutputs(const ExperimentSpec& experiment) const;
 
   RecordedFeatures select(const std::vector<std::size_t>& recordings) const;
   /// All but one.
@@ -36,8 +59,16 @@ RecordedFeatures readRecording(const MeasurementReader& reader, const Table& tab
 RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
                                 const std::vector<double>& starts, const std::vector<KnownValue>& known);
 
+/// The same of trials: each file is of one of them. Throws ExperimentError for an unknown trial.
+RecordedFeatures readTrials(const ExperimentSpec& combined, const std::vector<TrialFile>& files,
+                            const std::vector<double>& starts, const std::vector<KnownValue>& known);
+
+/// Nothing measured, of each trial or of the only one.
+RecordedFeatures makeEmptyRecordings(const ExperimentSpec& experiment, const std::vector<KnownValue>& known);
+
 /// One of the recordings, and its own unknown parameters.
 struct SingleRecording {
+  ExperimentSpec experiment;  ///< that of its trial
   RecordedFeatures recording;
   Eigen::VectorXd point;  ///< the machine's parameters, then its nuisance parameters
 };
@@ -83,7 +114,8 @@ class RecordingsProblem {
   RecordingFit fit(const Eigen::MatrixXd& starts) const;
 
  private:
-  std::vector<std::unique_ptr<const SimulatorRefiner>> simulators_;  // one of all recordings, or of each
+  std::vector<std::unique_ptr<const SimulatorRefiner>> simulators_;  // of trials, and recordings of their own
+  std::vector<std::size_t> outputs_;                                 // of each recording, how many
   PosteriorProblem problem_;
 };
 

@@ -17,13 +17,33 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The point of the sampled box of the first recording.
-VectorXd makeSampledPoint(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                          const VectorXd& point) {
-  const auto own = static_cast<Index>(experiment.model.parameters.size() + experiment.model.nuisance.size());
-  VectorXd sampled(own + recordings.known.size());
-  sampled << point.head(own), recordings.known;
-  return sampled;
+/// Of the model of a recording.
+ModelSizes calcSizes(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                     const VectorXd& point, std::size_t recording) {
+  const SingleRecording single = takeRecording(experiment, recordings, point, recording);
+  VectorXd sampled(single.point.size() + single.recording.known.size());
+  sampled << single.point, single.recording.known;
+  return calcModelSizes(single.experiment, sampled);
+}
+
+/// Of each trial's first recording; of one that was not recorded, at the centre of what is its own.
+std::vector<ModelSizes> calcTrialSizes(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                                       const VectorXd& point) {
+  std::vector<ModelSizes> sizes;
+  for (std::size_t t = 0; t < experiment.trials.size(); ++t) {
+    const auto first = std::find(recordings.trials.begin(), recordings.trials.end(), t);
+    if (first != recordings.trials.end()) {
+      sizes.push_back(calcSizes(experiment, recordings, point,
+                                static_cast<std::size_t>(first - recordings.trials.begin())));
+      continue;
+    }
+    const ExperimentSpec& trial = experiment.trials[t].experiment;
+    VectorXd sampled = calcBoxCenter(collectSampled(trial.model));
+    const auto p = static_cast<Index>(trial.model.parameters.size());
+    sampled.head(p) = point.head(p);
+    sizes.push_back(calcModelSizes(trial, sampled));
+  }
+  return sizes;
 }
 
 /// All columns but `count` from `first` on.
@@ -135,7 +155,11 @@ void requireSystem(const ExperimentSpec& experiment) {
                           "is a model from elsewhere, whose terms twinmap does not know; diagnose needs a "
                           "'system' of bodies");
   }
-  if (!(experiment.model.simulation.duration > 0.0)) {
+  const auto is_timed = [](const TrialExperiment& trial) {
+    return trial.experiment.model.simulation.duration > 0.0;
+  };
+  if (!(experiment.model.simulation.duration > 0.0) ||
+      !std::all_of(experiment.trials.begin(), experiment.trials.end(), is_timed)) {
     throw ExperimentError(experiment.name.where, experiment.name.text,
                           "is not simulated in time; diagnose needs a 'simulation.duration'");
   }
@@ -145,8 +169,9 @@ ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const Recorde
                                  const VectorXd& point, CandidateKinds kinds) {
   requireSystem(experiment);
   ScoredCandidates scored;
-  scored.candidates =
-      listCandidates(experiment, calcModelSizes(experiment, makeSampledPoint(experiment, recordings, point)));
+  scored.candidates = experiment.trials.empty()
+                          ? listCandidates(experiment, calcSizes(experiment, recordings, point, 0))
+                          : listTrialCandidates(experiment, calcTrialSizes(experiment, recordings, point));
   const auto with_states = std::stable_partition(scored.candidates.begin(), scored.candidates.end(),
                                                  [](const TermCandidate& one) { return !one.has_states; });
   if (kinds == CandidateKinds::kWithoutStates) {
@@ -190,9 +215,8 @@ FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& rec
     return fitted;  // the parameters, or its own scale, take it up
   }
   const double reach = std::abs(fitted.estimate) + kStddevs * fitted.stddev;
-  ParameterSpec& coefficient = fitted.augmented.experiment.model.parameters[static_cast<std::size_t>(p)];
   if (reach < largest) {
-    coefficient.bounds = {-reach, reach, {}};
+    setBounds(static_cast<std::size_t>(p), {-reach, reach, {}}, fitted.augmented.experiment);
   }
   return fitted;
 }

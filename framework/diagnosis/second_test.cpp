@@ -6,6 +6,7 @@
 #include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/diagnosis/score_test.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap {
 
@@ -25,7 +26,7 @@ TestDerivatives calcTestDerivatives(const ExperimentSpec& experiment, const Reco
                                     double factor) {
   AugmentedExperiment all = addAll(experiment, candidates);
   if (factor != 1.0) {
-    scaleSignals(all.experiment.model, factor);
+    changeTrials(all.experiment, [&](ExperimentSpec& one) { scaleSignals(one.model, factor); });
   }
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   const RecordingsProblem problem(all.experiment, recordings);

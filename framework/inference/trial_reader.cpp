@@ -2,9 +2,18 @@
 
 #include <algorithm>
 
+#include "framework/base/text/source_location.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap {
+
+TrialFile parseTrialFile(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
+    throw ExperimentError("--trial " + text + ": must be NAME=FILE, the name of a trial and its recording");
+  }
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
 
 TrialReader::TrialReader(const ExperimentSpec& combined) {
   for (const TrialExperiment& trial : combined.trials) {

@@ -8,6 +8,14 @@
 
 namespace twinmap {
 
+/// A file, and the trial that it records.
+struct TrialFile {
+  std::string trial, file;
+};
+
+/// Of "NAME=FILE". Throws ExperimentError for another text.
+TrialFile parseTrialFile(const std::string& text);
+
 /// From recordings of trials to the features of an experiment that combines them (combineTrials). Immutable.
 class TrialReader {
  public:

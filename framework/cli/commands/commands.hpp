@@ -128,6 +128,7 @@ struct InferArguments {
 struct DiagnoseArguments {
   std::string run;                    ///< as of infer
   std::vector<std::string> files;     ///< measurements of one machine; empty: what a test is blind to
+  std::vector<std::string> trials;    ///< "NAME=FILE" instead, of an experiment with trials
   std::vector<std::string> known;     ///< "NAME=VALUE" of the inputs
   std::vector<double> starts;         ///< times in each file that are 0 of the model; empty: the experiment's
   std::vector<std::string> accepted;  ///< terms to take; empty: those that are found

@@ -35,6 +35,13 @@ void addDiagnose(CLI::App& app) {
       ->add_option("MEASUREMENT", arguments->files,
                    "Files of one machine, explained together: CSV, MATLAB or HDF5, as infer takes them")
       ->option_text(" ");
+  command
+      ->add_option(
+          "--trial", arguments->trials,
+          "A recording of one of the experiment's trials, in the place of MEASUREMENT; all of them are "
+          "explained together")
+      ->type_name("NAME=FILE")
+      ->allow_extra_args(false);
   addKnown(*command, arguments->known);
   addStarts(*command, arguments->starts);
   command

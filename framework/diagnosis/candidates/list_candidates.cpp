@@ -1,9 +1,65 @@
 #include <algorithm>
+#include <map>
 
 #include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 
 namespace twinmap {
+namespace {
+
+void enlarge(const CoordinateSizes& by, std::vector<CoordinateSizes>& coordinates) {
+  const auto same = std::find_if(coordinates.begin(), coordinates.end(),
+                                 [&](const CoordinateSizes& one) { return one.name == by.name; });
+  if (same == coordinates.end()) {
+    coordinates.push_back(by);
+    return;
+  }
+  same->reach = std::max(same->reach, by.reach);
+  same->speed = std::max(same->speed, by.speed);
+  same->force = std::max(same->force, by.force);
+}
+
+/// Coordinates and own forces of all trials as large as in any.
+void shareSizes(std::vector<ModelSizes>& sizes) {
+  ModelSizes largest = sizes.front();
+  for (const ModelSizes& one : sizes) {
+    for (const CoordinateSizes& coordinate : one.coordinates) {
+      enlarge(coordinate, largest.coordinates);
+    }
+    for (std::size_t i = 0; i < largest.own_forces.size(); ++i) {
+      for (std::size_t k = 0; k < largest.own_forces[i].size(); ++k) {
+        largest.own_forces[i][k] = std::max(largest.own_forces[i][k], one.own_forces[i][k]);
+      }
+    }
+  }
+  for (ModelSizes& one : sizes) {
+    one.coordinates = largest.coordinates;
+    one.own_forces = largest.own_forces;
+  }
+}
+
+}  // namespace
+
+std::vector<TermCandidate> listTrialCandidates(const ExperimentSpec& combined,
+                                               std::vector<ModelSizes> sizes) {
+  shareSizes(sizes);
+  std::vector<TermCandidate> all;
+  std::map<std::pair<std::string, int>, std::size_t> places;  // of a term and the number of its scale
+  for (std::size_t t = 0; t < sizes.size(); ++t) {
+    std::map<std::string, int> scales;
+    for (TermCandidate& one : listCandidates(combined.trials[t].experiment, sizes[t])) {
+      const auto [place, is_new] = places.try_emplace({one.term, scales[one.term]++}, all.size());
+      if (is_new) {
+        all.push_back(one);
+        all.back().add_to_trials.resize(sizes.size());
+      }
+      TermCandidate& shared = all[place->second];
+      shared.size = std::max(shared.size, one.size);
+      shared.add_to_trials[t] = std::move(one.add);
+    }
+  }
+  return all;
+}
 
 std::vector<TermCandidate> listCandidates(const ExperimentSpec& experiment, const ModelSizes& sizes) {
   const ModelSpec& model = experiment.model;

@@ -16,6 +16,10 @@ struct OwnScale {
   double reach = 5.0;  ///< more than the steps of a scan
 };
 
+/// Adds a term to a model that has the parameter `coefficient`. own_scales: numbers, or parameters.
+using AddTerm = std::function<void(ModelSpec& model, const std::string& coefficient,
+                                   const std::vector<std::string>& own_scales)>;
+
 /// A term that a model may lack: a coefficient, 0 where it is absent, and what it multiplies.
 struct TermCandidate {
   std::string term;     ///< "drag.x": names it; the same of all own scales
@@ -26,10 +30,13 @@ struct TermCandidate {
   bool dissipates = false;
   std::vector<OwnScale> own_scales;  ///< the first one is scanned, others begin at their value
   bool has_states = false;           ///< whether it adds states to the model
-  /// Adds it to a model that has the parameter `coefficient`. own_scales: numbers, or parameters.
-  std::function<void(ModelSpec& model, const std::string& coefficient,
-                     const std::vector<std::string>& own_scales)>
-      add;
+  AddTerm add;
+  /// Of an experiment with trials, to each of theirs instead; empty where a trial lacks what it acts on.
+  std::vector<AddTerm> add_to_trials{};
+
+  const AddTerm& getAdd(std::size_t trial) const {
+    return add_to_trials.empty() ? add : add_to_trials[trial];
+  }
 };
 
 }  // namespace twinmap

@@ -34,6 +34,10 @@ std::vector<TermCandidate> listOwnCandidates(const std::vector<CandidateSpec>& c
 /// All of them, those with a scale of their own once for each value of a grid.
 std::vector<TermCandidate> listCandidates(const ExperimentSpec& experiment, const ModelSizes& sizes);
 
+/// Those of an experiment that combines trials, each once, with the sizes of every trial: a coordinate's are
+/// the largest, so that all trials scan the same scales.
+std::vector<TermCandidate> listTrialCandidates(const ExperimentSpec& combined, std::vector<ModelSizes> sizes);
+
 /// Once for each value of its first own scale, from `first` on, each `factor` times the one before.
 void addScanned(const TermCandidate& candidate, double first, double factor, int count,
                 std::vector<TermCandidate>& candidates);

@@ -99,6 +99,7 @@ class LinearFit {
     FittedRecording fitted;
     fitted.linear.residual = linear_.residual;
     fitted.linear.jacobian = linear_.jacobian(Eigen::all, dropped.listKept(linear_.jacobian.cols()));
+    fitted.half_widths = VectorXd::Ones(fitted.linear.jacobian.cols());  // linearizeScaled()
     if (term != nullptr) {
       fitted.linear.residual += calcForceEffect(experiment_, recordings_, point_, coordinate, term->force);
     }
@@ -117,7 +118,7 @@ class LinearFit {
 /// The force of each recording. shared: of their parameters, the first ones.
 std::vector<ForceCurve> estimateForces(const std::vector<FittedRecording>& fitted, Index shared,
                                        const ForceArgument& argument) {
-  const ProcessProblem problem{fitted, 0, shared, VectorXd::Ones(fitted.front().linear.jacobian.cols())};
+  const ProcessProblem problem{fitted, 0, shared};
   std::vector<double> lengths;
   for (const double share : kLengthShares) {
     lengths.push_back(share * argument.scale);

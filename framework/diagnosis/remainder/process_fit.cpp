@@ -85,7 +85,7 @@ class ProcessModel {
     for (std::size_t k = 0; k < parts_.size(); ++k) {
       addRecording(problem_.recordings[k].linear, parts_[k], variance, places_[k], sum);
       for (std::size_t i = 0; i < places_[k].size(); ++i) {
-        const double half = problem_.half_widths[static_cast<Index>(i)];
+        const double half = problem_.recordings[k].half_widths[static_cast<Index>(i)];
         sum.information(places_[k][i], places_[k][i]) =
             std::max(sum.information(places_[k][i], places_[k][i]), kHalfWidthInformation / (half * half));
       }
@@ -133,13 +133,17 @@ BestProcess searchProcess(const ProcessProblem& problem, const std::vector<doubl
   // sizes from what hardly shows to some thousand times that, in steps of a half
   constexpr int kSizes = 24;
   constexpr double kStep = 1.6;
-  const FittedRecording& first = problem.recordings.front();
-  const double scale = first.effects[problem.effect].responses.norm();
+  double scale = 0.0, residuals = 0.0;
+  for (const FittedRecording& recording : problem.recordings) {
+    if (const double own = recording.effects[problem.effect].responses.norm(); own > scale) {
+      scale = own;
+      residuals = static_cast<double>(recording.linear.residual.size());
+    }
+  }
   BestProcess best;
   for (const double length : lengths) {
     const ProcessModel model(problem, length);
-    double stddev =
-        0.1 * std::sqrt(static_cast<double>(first.linear.residual.size())) / std::max(scale, 1e-300);
+    double stddev = 0.1 * std::sqrt(residuals) / std::max(scale, 1e-300);
     const double none = calcRestricted(model.whiten(0.0));
     for (int i = 0; i < kSizes; ++i, stddev *= kStep) {
       const double variance = stddev * stddev;

@@ -12,14 +12,14 @@ namespace twinmap {
 struct FittedRecording {
   LinearizedRecordings linear;  ///< of its own unknown parameters: those of the machine, then its nuisance
   std::vector<ProcessEffect> effects;
+  Eigen::VectorXd half_widths;  ///< of its own parameters, whose bounds count as weak information
 };
 
 /// Recordings that one kind of process may explain: effect number `effect` of each.
 struct ProcessProblem {
   const std::vector<FittedRecording>& recordings;
   std::size_t effect = 0;
-  Eigen::Index shared = 0;      ///< parameters of the machine, the first of each recording's
-  Eigen::VectorXd half_widths;  ///< of a recording's own parameters, whose bounds count as weak information
+  Eigen::Index shared = 0;  ///< parameters of the machine, the first of each recording's
 };
 
 /// The best size and correlation length of a process: Ornstein and Uhlenbeck's, which may step, linear

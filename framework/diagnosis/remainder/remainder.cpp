@@ -17,7 +17,7 @@ namespace {
 
 /// The machine's parameters by each recording alone, around the common fit.
 void widenByScatter(const std::vector<FittedRecording>& recordings, const VectorXd& point, Index p,
-                    const VectorXd& half_widths, Remainder& remainder) {
+                    Remainder& remainder) {
   constexpr std::size_t kFewest = 3;  // of two the scatter is not known
   if (recordings.size() < kFewest) {
     return;
@@ -25,9 +25,10 @@ void widenByScatter(const std::vector<FittedRecording>& recordings, const Vector
   const auto n = static_cast<Index>(recordings.size());
   MatrixXd estimates(p, n), stddevs(p, n);
   for (Index k = 0; k < n; ++k) {
-    const LinearizedRecordings& linear = recordings[static_cast<std::size_t>(k)].linear;
+    const FittedRecording& recording = recordings[static_cast<std::size_t>(k)];
+    const LinearizedRecordings& linear = recording.linear;
     MatrixXd information = linear.jacobian.transpose() * linear.jacobian;
-    information.diagonal().array() += kHalfWidthInformation / half_widths.array().square();
+    information.diagonal().array() += kHalfWidthInformation / recording.half_widths.array().square();
     const linalg::Cholesky factor = linalg::calcCholesky(information);
     const VectorXd step = linalg::solveCholesky(factor.lower, linear.jacobian.transpose() * linear.residual);
     const MatrixXd covariance =
@@ -41,15 +42,46 @@ void widenByScatter(const std::vector<FittedRecording>& recordings, const Vector
   }
 }
 
+/// The same effects in the same order for all: of an output that a trial does not have, one that does
+/// nothing.
+void alignEffects(std::vector<FittedRecording>& recordings) {
+  std::vector<ProcessEffect> all;
+  const auto find = [](std::vector<ProcessEffect>& effects, const std::string& what) {
+    return std::find_if(effects.begin(), effects.end(),
+                        [&](const ProcessEffect& one) { return one.what == what; });
+  };
+  for (const FittedRecording& recording : recordings) {
+    for (const ProcessEffect& effect : recording.effects) {
+      if (find(all, effect.what) == all.end()) {
+        all.push_back(effect);
+      }
+    }
+  }
+  for (FittedRecording& recording : recordings) {
+    std::vector<ProcessEffect> aligned = all;
+    for (ProcessEffect& effect : aligned) {
+      const auto own = find(recording.effects, effect.what);
+      if (own != recording.effects.end()) {
+        effect = *own;
+      } else {
+        effect.responses = MatrixXd::Zero(recording.linear.residual.size(), effect.knots.size());
+      }
+    }
+    recording.effects = std::move(aligned);
+  }
+}
+
 std::vector<FittedRecording> fitRecordings(const ExperimentSpec& experiment,
                                            const RecordedFeatures& recordings, const VectorXd& point) {
   std::vector<FittedRecording> fitted;
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
     const SingleRecording one = takeRecording(experiment, recordings, point, k);
-    const RecordingsProblem problem(experiment, one.recording);
+    const RecordingsProblem problem(one.experiment, one.recording);
     fitted.push_back({problem.linearize(one.point),
-                      listProcessEffects(experiment, one.recording, one.point, problem.listInfos())});
+                      listProcessEffects(one.experiment, one.recording, one.point, problem.listInfos()),
+                      0.5 * calcWidths(problem.getUnknown())});
   }
+  alignEffects(fitted);
   return fitted;
 }
 
@@ -59,13 +91,12 @@ std::optional<Remainder> findRemainder(const ExperimentSpec& experiment, const R
                                        const VectorXd& point, Index p) {
   const std::vector<FittedRecording> fitted = fitRecordings(experiment, recordings, point);
   const auto all = static_cast<Index>(experiment.model.parameters.size());
-  const VectorXd half_widths = 0.5 * calcWidths(collectUnknown(experiment.model));
   const double duration = experiment.model.simulation.duration;
   BestProcess best;
-  ProcessProblem chosen{fitted, 0, all, half_widths};
+  ProcessProblem chosen{fitted, 0, all};
   for (std::size_t e = 0; e < fitted.front().effects.size(); ++e) {
     // few correlation times: the evidence changes little with them
-    const ProcessProblem problem{fitted, e, all, half_widths};
+    const ProcessProblem problem{fitted, e, all};
     const BestProcess process = searchProcess(problem, {0.02 * duration, 0.06 * duration, 0.2 * duration});
     if (process.log_evidence > best.log_evidence) {
       best = process;
@@ -86,7 +117,7 @@ std::optional<Remainder> findRemainder(const ExperimentSpec& experiment, const R
                       estimate.covariance.diagonal().head(p).cwiseSqrt(),
                       effect.knots,
                       estimate.means.front()};
-  widenByScatter(fitted, point, p, half_widths, remainder);
+  widenByScatter(fitted, point, p, remainder);
   return remainder;
 }
 

@@ -15,7 +15,7 @@ double calcMeanSquare(const WhitenedResidual& fit, const std::vector<std::string
   int count = 0;
   for (std::size_t i = 0; i < fit.infos.size(); ++i) {
     const int output = fit.infos[i].output;
-    if (output >= 0 && outputs[static_cast<std::size_t>(output) % outputs.size()] == name) {
+    if (output >= 0 && outputs[static_cast<std::size_t>(output)] == name) {
       const double residual = fit.residual[static_cast<Eigen::Index>(i)];
       sum += residual * residual;
       ++count;
@@ -52,6 +52,13 @@ NoiseSpec sizeNoise(const NoiseSpec& stated, const WhitenedResidual& fit,
     }
   }
   return sized;
+}
+
+void copyNoise(const ExperimentSpec& from, ExperimentSpec& to) {
+  to.noise = from.noise;
+  for (std::size_t t = 0; t < to.trials.size(); ++t) {
+    to.trials[t].experiment.noise = from.trials[t].experiment.noise;
+  }
 }
 
 }  // namespace twinmap

@@ -21,8 +21,12 @@ struct WhitenedResidual {
   const std::vector<FeatureInfo>& infos;  ///< of each; outputs are counted on over recordings
 };
 
-/// Noise whose unknown sizes are those of the residual, which what the model lacks makes larger.
+/// Noise whose unknown sizes are those of the residual, which what the model lacks makes larger. outputs: the
+/// name of each output that the infos number.
 NoiseSpec sizeNoise(const NoiseSpec& stated, const WhitenedResidual& fit,
                     const std::vector<std::string>& outputs);
+
+/// The noise of `from`, in all trials.
+void copyNoise(const ExperimentSpec& from, ExperimentSpec& to);
 
 }  // namespace twinmap

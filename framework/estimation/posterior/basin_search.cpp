@@ -17,6 +17,15 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Of chi-square, between the best basin and others: for the same volume they bear a share of 4e-6.
+constexpr double kBasinAbove = 25.0;
+
+/// In standard deviations of the basin.
+double calcDistance(const Basin& basin, const VectorXd& at) {
+  const VectorXd apart = at - basin.local.at;
+  return std::sqrt(apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)));
+}
+
 bool isExplained(const std::vector<Basin>& basins) {
   return !basins.empty() &&
          basins.front().local.chi_square < calcChiSquareLimit(basins.front().local.degrees);
@@ -133,6 +142,21 @@ class BasinHunt {
     return !found_.basins.empty() && found_.basins.front().searches >= options_.confirmations;
   }
 
+  /// Whether enough searches, and so large a share, end in the best basin, which is as wide as if the noise
+  /// were as large as the residual.
+  bool isSettled(double share) const {
+    if (!options_.settles || found_.basins.empty()) {
+      return false;
+    }
+    const Basin& best = found_.basins.front();
+    const double scale = std::max(1.0, best.local.chi_square / best.local.degrees);
+    const auto count = std::count_if(ends_.begin(), ends_.end(), [&](const LocalSurface& end) {
+      return end.misfit < best.local.misfit + scale * kBasinAbove &&
+             calcDistance(best, end.at) < kBasinReach * std::sqrt(scale);
+    });
+    return count >= options_.confirmations && static_cast<double>(count) >= share * found_.starts;
+  }
+
   /// The next starts, at most so many.
   MatrixXd takeStarts(int count) {
     const Index most = std::min<Index>(count, starts_.cols() - taken_);
@@ -204,8 +228,7 @@ MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
 }
 
 bool liesIn(const Basin& basin, const VectorXd& at) {
-  const VectorXd apart = at - basin.local.at;
-  return apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)) < kBasinReach * kBasinReach;
+  return calcDistance(basin, at) < kBasinReach;
 }
 
 MatrixXd calcBasinCovariance(const MatrixXd& information) {
@@ -216,13 +239,12 @@ MatrixXd calcBasinCovariance(const MatrixXd& information) {
 }
 
 std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
-  constexpr double kAbove = 25.0;  // bears a share of 4e-6 for the same volume
   constexpr std::size_t kMax = 12;
   std::stable_sort(ends.begin(), ends.end(),
                    [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
   std::vector<Basin> basins;
   for (LocalSurface& end : ends) {
-    if (end.misfit > ends.front().misfit + kAbove) {
+    if (end.misfit > ends.front().misfit + kBasinAbove) {
       break;
     }
     const auto known =
@@ -255,6 +277,9 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
       return hunt.getFound();
     }
   }
+  if (!hunt.isExplained() && hunt.isSettled(0.5)) {
+    return hunt.getFound();
+  }
   MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
   for (int batch = 0; batch < options.max_batches; ++batch) {
     const MatrixXd next =
@@ -266,7 +291,7 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
       hunt.searchWindows(all);
     }
     again.resize(Eigen::NoChange, 0);
-    if (hunt.getFound().basins.empty() || hunt.isConfirmed()) {
+    if (hunt.getFound().basins.empty() || hunt.isConfirmed() || hunt.isSettled(0.0)) {
       break;
     }
   }

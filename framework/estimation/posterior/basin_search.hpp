@@ -57,6 +57,10 @@ struct BasinSearchOptions {
   /// Whether starts are spread as the prior is, not all over the bounds: of many parameters hardly any start
   /// is near enough else.
   bool from_prior = false;
+  /// Whether the scouts do where half of them end in the best basin, and a batch where it was found often
+  /// enough, although noise does not explain it: for models that lack something, whose best fit is wanted but
+  /// not trusted. The basin is then as wide as if the noise were as large as the residual.
+  bool settles = false;
 };
 
 /// The minima of a surface that may bear some of the posterior: chi-square at most 25 above the best.

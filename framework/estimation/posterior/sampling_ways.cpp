@@ -154,8 +154,7 @@ bool mayBend(const PosteriorProblem& problem) {
 }
 
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                         const PosteriorDrawOptions& options) {
-  const bool may_bend = mayBend(problem);
+                         bool may_bend, const PosteriorDrawOptions& options) {
   const ChosenShape shape = chooseShape(problem, found, whole, options.seed);
   int simulations = 0;
   if (may_bend && !shape.is_straight) {

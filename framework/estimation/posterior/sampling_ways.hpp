@@ -24,8 +24,8 @@ bool mayBend(const PosteriorProblem& problem);
 /// The straightest way first: along a bent ridge mixtures may find draws of a part of it good enough. Where
 /// sums alone are determined, in these (drawInSums); from mixtures of the basins, with what is straighter as
 /// it is (findRidgeShape); where that does not do, along walks (drawAlongWalks). whole: in logarithms, where
-/// the basins were found.
+/// the basins were found. may_bend: whether sums and walks are tried (mayBend).
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                         const PosteriorDrawOptions& options);
+                         bool may_bend, const PosteriorDrawOptions& options);
 
 }  // namespace twinmap

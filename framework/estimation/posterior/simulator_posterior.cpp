@@ -121,7 +121,8 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   if (problem.trials.size() == 1) {
     posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
   }
-  const Sampling sampling = samplePosterior(problem, found, whole, options);
+  const bool is_spared = options.spares_misfit && !posterior.isExplained();
+  const Sampling sampling = samplePosterior(problem, found, whole, mayBend(problem) && !is_spared, options);
   posterior.simulations = surface.getSimulations() + sampling.simulations;
   posterior.effective_sample_size = sampling.drawn.effective_sample_size;
   posterior.pareto_shape = sampling.drawn.pareto_shape;

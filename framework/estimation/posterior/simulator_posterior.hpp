@@ -61,6 +61,9 @@ struct SimulatorPosterior {
 
 struct SimulatorPosteriorOptions : PosteriorDrawOptions {
   BasinSearchOptions search{};
+  /// Whether draws that mixtures about the basins do not give are not sought by sums and walks where noise
+  /// does not explain the best point: they would be of a wrong model.
+  bool spares_misfit = false;
   bool profiles = false;  ///< whether profile likelihoods are wanted, of up to kManyUnknown, all drawn
 };
 

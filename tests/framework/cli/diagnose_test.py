@@ -38,6 +38,33 @@ class Diagnose(FolderTestCase):
         self.assertTrue(found["complete"])
         self.assertIn("None of", self.diagnose(CART, self.sound))
 
+    def test_explains_trials_together(self):
+        chirp = "{F: {unit: N, chirps: [{amplitude: %s, start_frequency: 0.5, end_frequency: 5, end: 4}]}}"
+        trials = "".join(f"  {n}: {{excitation: {chirp % a}}}\n" for n, a in [("soft", 1), ("hard", 4)])
+        file = self.folder / "trials.yaml"
+        file.write_text(CART.read_text() + "\ntrials:\n" + trials)
+        recordings = []
+        for trial in ("soft", "hard"):
+            drag = "system.force_laws[0].force=F - k3*x^3 - 0.4*abs(x_dot)*x_dot"
+            path = self.folder / f"{trial}.csv"
+            result = call("simulate", file, "--noise", "--csv", path, f"trial={trial}", drag)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            recordings += ["--trial", f"{trial}={path}"]
+        corrected = self.folder / "with_drag.yaml"
+        found = json.loads(self.diagnose(file, *recordings, "--json", "--out", corrected))
+        self.assertEqual(found["found"], ["drag.x"])
+        inferred = call("infer", corrected, *recordings, "--json")
+        self.assertEqual(inferred.returncode, 0, inferred.stderr)
+        self.assertIn("drag.x", self.diagnose(file))  # blind spots of both
+        for arguments, words in [
+            ([file, recordings[1].split("=")[1]], "which trial does it record"),
+            ([CART, *recordings[:2]], "has no trials"),
+            ([file, *recordings, "--page", self.folder / "p.html"], "one trial"),
+        ]:
+            refused = call("diagnose", *arguments)
+            self.assertEqual(refused.returncode, 2, refused.stderr)
+            self.assertIn(words, refused.stderr)
+
     def blow(self, seed):
         """A recording of a cart in gusts: random steps of a force that forgets itself within .2 s."""
         numbers = random.Random(seed)
@@ -121,14 +148,13 @@ class Diagnose(FolderTestCase):
         self.assertNotIn("model_mismatch", inferred["statuses"])
         self.assertIn("coulomb_x", inferred["parameters"])
 
-    def test_noise_of_unknown_size_has_no_held_out_test(self):
+    def test_noise_of_unknown_size_is_that_of_the_fit(self):
         unknown = self.folder / "unknown.yaml"
         unknown.write_text(CART.read_text().replace("stddev: {x: 1e-4}", "stddev: {x: unknown}"))
-        result = call("validate", unknown, self.sound, "--against", self.rubbing)
-        self.assertEqual(result.returncode, 2, result.stdout)
-        self.assertIn(
-            "has noise of unknown size, without which nobody knows how well a prediction must fit", result.stderr
-        )
+        again = self.simulate("again.csv", "seed=2")
+        self.assertEqual(call("validate", unknown, self.sound, "--against", again).returncode, 0)
+        rubbing = call("validate", unknown, self.sound, "--against", self.rubbing)
+        self.assertEqual(rubbing.returncode, 3, rubbing.stderr)
 
     def test_says_what_a_test_is_blind_to(self):
         spots = {spot["term"]: spot for spot in json.loads(self.diagnose(CART, "--json"))["blind_spots"]}

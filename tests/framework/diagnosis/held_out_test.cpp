@@ -50,6 +50,15 @@ TEST(HeldOut, ShowsWhatAModelLacks) {
   EXPECT_LT(predictHeldOut(experiment, measureHeld(kHeldWithFriction, 2), machine).p_value, 1e-3);
 }
 
+TEST(HeldOut, IsHeldToTheFitWhereTheSizeOfNoiseIsUnknown) {
+  const ExperimentSpec unknown = loadExperiment(kCart, {"noise.stddev.x=unknown"});
+  const ExperimentSpec sized = sizeNoiseByFit(unknown, measureHeld(kHeldSound, 1), {});
+  EXPECT_NEAR(sized.noise.stddev[0].stddev.value, 1e-4, 3e-5);  // of the cart; 4 sd of a hundred samples
+  const KnownMachine machine = inferMachine(sized, measureHeld(kHeldSound, 1), {});
+  EXPECT_GT(predictHeldOut(sized, measureHeld(kHeldSound, 2), machine).p_value, 1e-3);
+  EXPECT_LT(predictHeldOut(sized, measureHeld(kHeldWithFriction, 2), machine).p_value, 1e-3);
+}
+
 TEST(HeldOut, NeedsSamplesToPredict) {
   const ExperimentSpec experiment = loadExperiment(kCart);
   const RecordedFeatures recording = measureHeld(kHeldSound, 1);

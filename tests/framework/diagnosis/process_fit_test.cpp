@@ -23,6 +23,7 @@ double wave(Index i, Index j, double phase) {
 /// A recording whose residual is that of a process of known values and two parameters 0.
 FittedRecording makeRecording(double phase) {
   FittedRecording recording;
+  recording.half_widths = VectorXd::Constant(kParameters, 1e6);
   recording.linear.jacobian = MatrixXd::NullaryExpr(
       kResiduals, kParameters, [&](Index i, Index j) { return 3.0 * wave(i, j, phase + 1.0); });
   ProcessEffect effect{"a force", "N", VectorXd::LinSpaced(kKnots, 0.0, 1.0), {}};
@@ -51,7 +52,7 @@ TEST(EstimateProcess, IsThePosteriorOfParametersAndKnots) {
   const std::vector<FittedRecording> recordings{makeRecording(0.4)};
   const LinearizedRecordings& linear = recordings[0].linear;
   const ProcessEffect& effect = recordings[0].effects[0];
-  const ProcessProblem problem{recordings, 0, kParameters, VectorXd::Constant(kParameters, 1e6)};
+  const ProcessProblem problem{recordings, 0, kParameters};
   const ProcessEstimate estimate = estimateProcess(problem, {0.0, kVariance, kLength});
   MatrixXd all(kResiduals, kParameters + kKnots);
   all << linear.jacobian, effect.responses;
@@ -67,7 +68,7 @@ TEST(EstimateProcess, IsThePosteriorOfParametersAndKnots) {
 
 TEST(SearchProcess, FindsTheSizeOfAProcessAndNoneWhereThereIsNone) {
   std::vector<FittedRecording> recordings{makeRecording(0.4), makeRecording(0.9)};
-  const ProcessProblem problem{recordings, 0, kParameters, VectorXd::Constant(kParameters, 1e6)};
+  const ProcessProblem problem{recordings, 0, kParameters};
   const BestProcess best = searchProcess(problem, {0.1, 0.3, 1.0});
   EXPECT_GT(best.log_evidence, 100.0);
   EXPECT_GT(std::sqrt(best.variance), 0.7);

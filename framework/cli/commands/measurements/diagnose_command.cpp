@@ -4,8 +4,10 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/study/diagnosis/diagnosis_page.hpp"
@@ -13,15 +15,50 @@
 namespace twinmap::cli {
 namespace {
 
-void printBlindSpots(const DiagnoseArguments& arguments, const MeasurementReader& reader,
-                     RecordedFeatures recordings) {
-  const ExperimentSpec& experiment = reader.getExperiment();
-  recordings.features = {Eigen::VectorXd::Zero(reader.getExtractor().getFeatureCount())};
-  const std::vector<BlindSpot> spots = calcBlindSpots(experiment, recordings, DiagnosisOptions{}.level);
+void printBlindSpots(const DiagnoseArguments& arguments, const ExperimentSpec& experiment) {
+  const RecordedFeatures none = makeEmptyRecordings(experiment, parseKnownValues(arguments.known));
+  const std::vector<BlindSpot> spots = calcBlindSpots(experiment, none, DiagnosisOptions{}.level);
   const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
   std::cout << (arguments.json  ? makeBlindSpotJson(spots, parameters) + "\n"
                 : arguments.csv ? makeBlindSpotCsv(spots, parameters)
                                 : makeBlindSpotTable(spots, parameters));
+}
+
+void requireMeasurements(const DiagnoseArguments& arguments) {
+  if (!arguments.accepted.empty()) {
+    throw ExperimentError("--accept fits a term to measurements; give their files");
+  }
+  if (!arguments.page.empty()) {
+    throw ExperimentError("--page draws measurements; give their files");
+  }
+}
+
+/// What --trial gives.
+RecordedFeatures readOfTrials(const DiagnoseArguments& arguments, const ExperimentSpec& experiment) {
+  if (experiment.trials.empty()) {
+    throw ExperimentError("--trial " + arguments.trials.front() +
+                          ": the experiment has no trials; give the file alone");
+  }
+  if (!arguments.page.empty()) {
+    throw ExperimentError(
+        "--page draws recordings of one trial; leave it out, or choose one by its own file");
+  }
+  std::vector<TrialFile> files;
+  for (const std::string& text : arguments.trials) {
+    files.push_back(parseTrialFile(text));
+  }
+  return readTrials(experiment, files, arguments.starts, parseKnownValues(arguments.known));
+}
+
+RecordedFeatures readArguments(const DiagnoseArguments& arguments, const MeasurementReader& reader) {
+  const ExperimentSpec& experiment = reader.getExperiment();
+  if (!experiment.trials.empty() && !arguments.files.empty()) {
+    throw ExperimentError(arguments.files.front() +
+                          ": which trial does it record? Give --trial NAME=" + arguments.files.front());
+  }
+  return arguments.trials.empty()
+             ? readRecordings(reader, arguments.files, arguments.starts, parseKnownValues(arguments.known))
+             : readOfTrials(arguments, experiment);
 }
 
 /// Tolerances that the file does not give follow the noise anew: the terms' parameters may need smaller ones.
@@ -40,28 +77,24 @@ void freeTolerances(SimulationSpec& simulation) {
 void diagnose(const DiagnoseArguments& arguments) {
   const InferenceSource source(arguments.run);
   const MeasurementReader& reader = source.getReader();
-  const RecordedFeatures recordings =
-      readRecordings(reader, arguments.files, arguments.starts, parseKnownValues(arguments.known));
-  if (arguments.files.empty()) {
-    if (!arguments.accepted.empty()) {
-      throw ExperimentError("--accept fits a term to measurements; give their files");
-    }
-    if (!arguments.page.empty()) {
-      throw ExperimentError("--page draws measurements; give their files");
-    }
-    printBlindSpots(arguments, reader, recordings);
+  if (arguments.files.empty() && arguments.trials.empty()) {
+    requireMeasurements(arguments);
+    printBlindSpots(arguments, reader.getExperiment());
     return;
   }
+  const RecordedFeatures recordings = readArguments(arguments, reader);
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
   Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
-  const std::string name = fmt::format("{}", fmt::join(arguments.files, ", "));
+  const std::string name =
+      fmt::format("{}", fmt::join(arguments.trials.empty() ? arguments.files : arguments.trials, ", "));
   std::cout << (arguments.json  ? makeDiagnosisJson(diagnosis, name) + "\n"
                 : arguments.csv ? makeDiagnosisCsv(diagnosis, name)
                                 : makeDiagnosisTable(diagnosis, name));
   if (!arguments.out.empty()) {
-    freeTolerances(diagnosis.corrected.model.simulation);
+    requireSharedSystem(diagnosis.corrected);
+    changeTrials(diagnosis.corrected, [](ExperimentSpec& one) { freeTolerances(one.model.simulation); });
     writeTextFile(arguments.out, writeExperiment(diagnosis.corrected));
   }
   if (!arguments.page.empty()) {

@@ -18,27 +18,18 @@
 namespace twinmap::cli {
 namespace {
 
-/// A file, and the trial that it records.
-struct RecordedFile {
-  std::string trial, file;
-};
-
 /// What --trial gives.
-std::vector<RecordedFile> listTrialFiles(const InferArguments& arguments) {
-  std::vector<RecordedFile> files;
+std::vector<TrialFile> listTrialFiles(const InferArguments& arguments) {
+  std::vector<TrialFile> files;
   for (const std::string& text : arguments.trials) {
-    const std::size_t equals = text.find('=');
-    if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
-      throw ExperimentError("--trial " + text + ": must be NAME=FILE, the name of a trial and its recording");
-    }
-    files.push_back({text.substr(0, equals), text.substr(equals + 1)});
+    files.push_back(parseTrialFile(text));
   }
   return files;
 }
 
-std::vector<RecordedFile> listFiles(const InferArguments& arguments, const JointInferrer& inferrer) {
-  std::vector<RecordedFile> files = listTrialFiles(arguments);
-  for (const RecordedFile& one : files) {
+std::vector<TrialFile> listFiles(const InferArguments& arguments, const JointInferrer& inferrer) {
+  std::vector<TrialFile> files = listTrialFiles(arguments);
+  for (const TrialFile& one : files) {
     inferrer.getReader(one.trial);
   }
   for (const std::string& file : arguments.files) {
@@ -52,7 +43,7 @@ std::vector<RecordedFile> listFiles(const InferArguments& arguments, const Joint
 
 std::vector<RecordedTable> readTables(const InferArguments& arguments, const JointInferrer& inferrer) {
   std::vector<RecordedTable> tables;
-  for (const RecordedFile& one : listFiles(arguments, inferrer)) {
+  for (const TrialFile& one : listFiles(arguments, inferrer)) {
     const std::vector<std::string> columns = inferrer.getReader(one.trial).listColumns();
     tables.push_back({one.trial, one.file, readTable(one.file, columns, MissingCells::kKeep)});
   }
@@ -115,7 +106,7 @@ bool inferByRun(const InferArguments& arguments) {
   const TrialReader trials(source.getExperiment());
   std::vector<RecordedTable> tables;
   std::string names;
-  for (const RecordedFile& one : listTrialFiles(arguments)) {
+  for (const TrialFile& one : listTrialFiles(arguments)) {
     tables.push_back(
         {one.trial, one.file, readTable(one.file, trials.get(one.trial).listColumns(), MissingCells::kKeep)});
     names += (names.empty() ? "" : ", ") + one.trial + "=" + one.file;

@@ -73,9 +73,10 @@ void validate(const ValidateArguments& arguments) {
   const MeasurementReader& reader = source.getReader();
   const std::vector<KnownValue> known = parseKnownValues(arguments.known);
   const RecordedFeatures fitted = readRecordings(reader, arguments.files, arguments.starts, known);
-  const KnownMachine machine =
-      inferMachine(reader.getExperiment(), fitted,
-                   makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws));
+  const SimulatorPosteriorOptions options =
+      makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
+  const ExperimentSpec experiment = sizeNoiseByFit(reader.getExperiment(), fitted, options);
+  const KnownMachine machine = inferMachine(experiment, fitted, options);
   std::vector<Validated> all;
   for (const std::string& file : arguments.against) {
     const RecordedFeatures windows = readRecordings(reader, {file}, arguments.against_starts, known);
@@ -84,7 +85,7 @@ void validate(const ValidateArguments& arguments) {
       one.source = windows.features.size() == 1
                        ? file
                        : fmt::format("{} from {} s", file, toText(arguments.against_starts[k]));
-      one.prediction = predictHeldOut(reader.getExperiment(), windows.select({k}), machine);
+      one.prediction = predictHeldOut(experiment, windows.select({k}), machine);
       one.is_good = isGood(one.prediction, arguments.max_rms);
       all.push_back(one);
     }
