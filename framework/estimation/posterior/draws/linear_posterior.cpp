@@ -1,13 +1,17 @@
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 
 #include "framework/base/random/random.hpp"
+#include "framework/base/random/standard_normal.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/sampling/convergence.hpp"
 #include "kernels/sampling/elliptical_slice.hpp"
+#include "kernels/sampling/nuts.hpp"
 
 namespace twinmap {
 
@@ -62,6 +66,16 @@ VectorXd calcLinearLosses(const MisfitSurface& surface, const Basin& basin, cons
          apart.transpose() * descent;
 }
 
+/// Of a chain's draws (u x n), in the coordinate that it knows worst; at most 1.
+double calcIndependentShare(const MatrixXd& points) {
+  double least = 1.0;
+  for (Index j = 0; j < points.rows(); ++j) {
+    const markov::Convergence found = markov::calcConvergence({points.row(j).transpose()});
+    least = std::min(least, found.effective_sample_size / static_cast<double>(points.cols()));
+  }
+  return least;
+}
+
 /// One chain of draws of the linear posterior, and what each weighs (log).
 class LinearChain {
  public:
@@ -70,19 +84,17 @@ class LinearChain {
       : surface_(surface),
         basin_(basin),
         curvature_(curvature),
-        numbers_(makeNumbers(RandomStream(seed, RandomPurpose::kPosterior))),
+        random_(seed, RandomPurpose::kPosterior),
+        numbers_(makeNumbers(random_)),
         at_(basin.local.at) {}
 
   void draw(int count) {
-    constexpr int kSteps = 50;  // a draw: those of a uniform prior in a corner hardly depend on each other
-    const MatrixXd points = importance::sampleEllipticalSlices(makeLinear(surface_, basin_, curvature_), at_,
-                                                               count, kSteps, numbers_);
+    const MatrixXd points = curvature_ == nullptr ? walk(count) : walkAlongBends(count);
     VectorXd log_weights = surface_.calcLogPosteriors(points) + calcLinearLosses(surface_, basin_, points);
     for (Index i = 0; i < count; ++i) {
       log_weights[i] -= surface_.calcLogPrior(points.col(i));
       log_weights[i] += curvature_ != nullptr ? curvature_->calcBend(points.col(i)) : 0.0;
     }
-    at_ = points.rightCols(1);
     const Index before = points_.cols();
     points_.conservativeResize(points.rows(), before + count);
     points_.rightCols(count) = points;
@@ -92,12 +104,77 @@ class LinearChain {
 
   const VectorXd& getLogWeights() const { return log_weights_; }
   importance::WeightedDraws weigh() const { return importance::weigh(points_, log_weights_); }
+  /// Of the draws, the share that depend on one another no more than independent ones would.
+  double getIndependentShare() const { return independent_share_; }
 
  private:
+  MatrixXd walk(int count) {
+    constexpr int kSteps = 50;  // a draw: those of a uniform prior in a corner hardly depend on each other
+    MatrixXd points = importance::sampleEllipticalSlices(makeLinear(surface_, basin_, nullptr), at_, count,
+                                                         kSteps, numbers_);
+    at_ = points.rightCols(1);
+    return points;
+  }
+
+  /// Along a bent valley ellipses are short: by the gradient instead, in the basin's own axes.
+  MatrixXd walkAlongBends(int count) {
+    constexpr int kWarmUp = 300;
+    const importance::TiltedNormal density = makeLinear(surface_, basin_, curvature_);
+    const auto round = static_cast<std::uint64_t>(points_.cols());
+    const auto draw = [&](std::uint64_t channel, Index i) {
+      return random_.calcUniform(static_cast<std::uint64_t>(i), channel, round);
+    };
+    constexpr std::uint64_t kNormalChannel = 4, kUniformChannel = 5;
+    markov::NutsOptions options;
+    options.warm_up = kWarmUp;
+    options.draws = count;
+    const markov::Chain chain = markov::sampleNuts(
+        [&](const VectorXd& z, VectorXd& gradient) { return calcWhitened(density, z, gradient); },
+        linalg::solveLower(density.lower, at_ - density.mean),
+        {[&](Index i) { return toStandardNormal(draw(kNormalChannel, i)); },
+         [&](Index i) { return draw(kUniformChannel, i); }},
+        options);
+    MatrixXd points = (density.lower * chain.draws).colwise() + density.mean;
+    at_ = points.rightCols(1);
+    independent_share_ = std::min(independent_share_, calcIndependentShare(points));
+    return points;
+  }
+
+  /// log of a tilted normal density at mean + lower z, and its gradient by z.
+  double calcWhitened(const importance::TiltedNormal& density, const VectorXd& z, VectorXd& gradient) const {
+    const VectorXd point = density.mean + density.lower * z;
+    const double log_factor = density.log_factor(point);
+    if (!std::isfinite(log_factor)) {
+      return log_factor;
+    }
+    const PriorMisfit prior = surface_.linearizePrior(basin_.local.at);
+    VectorXd slope = calcPriorSlope(point) - prior.descent - curvature_->calcBendSlope(point);
+    slope +=
+        prior.information * (point - basin_.local.at) + kHalfWidthInformation * (point - basin_.local.at);
+    gradient = density.lower.transpose() * slope - z;
+    return log_factor - 0.5 * z.squaredNorm();
+  }
+
+  /// By central differences: no simulation is needed, and a prior is smooth.
+  VectorXd calcPriorSlope(const VectorXd& point) const {
+    constexpr double kStep = 1e-6;
+    VectorXd slope(point.size()), moved = point;
+    for (Index j = 0; j < point.size(); ++j) {
+      moved[j] = point[j] + kStep;
+      const double above = surface_.calcLogPrior(moved);
+      moved[j] = point[j] - kStep;
+      slope[j] = (above - surface_.calcLogPrior(moved)) / (2.0 * kStep);
+      moved[j] = point[j];
+    }
+    return slope;
+  }
+
   MisfitSurface& surface_;
   const Basin& basin_;
   const ResponseCurvature* curvature_;
+  const RandomStream random_;
   const importance::SliceNumbers numbers_;
+  double independent_share_ = 1.0;
   VectorXd at_, log_weights_;
   MatrixXd points_;
 };
@@ -113,7 +190,8 @@ AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int d
     chain.draw(draws);
     ++drawn.rounds;
     drawn.draws = chain.weigh();
-    drawn.effective_sample_size = importance::calcEffectiveSampleSize(drawn.draws);
+    drawn.effective_sample_size =
+        chain.getIndependentShare() * importance::calcEffectiveSampleSize(drawn.draws);
     const double reached = drawn.effective_sample_size / drawn.rounds * most_rounds;
     goes_on = drawn.rounds < most_rounds && drawn.effective_sample_size < importance::kSmallestSampleSize &&
               reached >= importance::kSmallestSampleSize;

@@ -76,19 +76,7 @@ std::vector<LinearResponse> linearizeResponses(MisfitSurface& surface, const Mat
   return responses;
 }
 
-/// Products z_j z_k with j <= k.
-VectorXd multiplyPairs(const VectorXd& z) {
-  VectorXd products(z.size() * (z.size() + 1) / 2);
-  Index place = 0;
-  for (Index j = 0; j < z.size(); ++j) {
-    for (Index k = j; k < z.size(); ++k) {
-      products[place++] = z[j] * z[k];
-    }
-  }
-  return products;
-}
-
-/// Columns for multiplyPairs() of sum_jk H_jk z_j z_k / 2, with H_jk the mean of what both axes say, or of
+/// Columns for all pairs j <= k of sum_jk H_jk z_j z_k / 2, with H_jk the mean of what both axes say, or of
 /// one where the other has no step.
 MatrixXd pairBends(const std::vector<MatrixXd>& along, const VectorXd& steps, Index rows) {
   const Index u = steps.size();
@@ -168,15 +156,47 @@ ResponseCurvature::ResponseCurvature(const VectorXd& at, const MatrixXd& axes)
 
 void ResponseCurvature::reduce(const VectorXd& residual, const MatrixXd& jacobian, const MatrixXd& bends) {
   const MatrixXd directions = findDirections(bends);
-  bends_ = directions.transpose() * bends;
+  std::vector<Index> bent;
+  Index column = 0;
+  for (Index j = 0; j < at_.size(); ++j) {
+    for (Index k = j; k < at_.size(); ++k, ++column) {
+      if (!bends.col(column).isZero(0.0)) {
+        bent.push_back(column);
+        pairs_.emplace_back(j, k);
+      }
+    }
+  }
+  bends_ = directions.transpose() * bends(Eigen::all, bent);
   jacobian_ = directions.transpose() * jacobian;
   residual_ = directions.transpose() * residual;
+}
+
+VectorXd ResponseCurvature::multiplyPairs(const VectorXd& z) const {
+  VectorXd products(bends_.cols());
+  for (Index i = 0; i < products.size(); ++i) {
+    const auto& [j, k] = pairs_[static_cast<std::size_t>(i)];
+    products[i] = z[j] * z[k];
+  }
+  return products;
 }
 
 double ResponseCurvature::calcBend(const VectorXd& point) const {
   const VectorXd z = to_axes_ * (point - at_);
   const VectorXd bend = bends_ * multiplyPairs(z);
   return 0.5 * bend.squaredNorm() - bend.dot(residual_ - jacobian_ * z);
+}
+
+VectorXd ResponseCurvature::calcBendSlope(const VectorXd& point) const {
+  const VectorXd z = to_axes_ * (point - at_);
+  const VectorXd bend = bends_ * multiplyPairs(z);
+  const VectorXd by_pair = bends_.transpose() * (bend - residual_ + jacobian_ * z);
+  VectorXd slope = jacobian_.transpose() * bend;
+  for (Index i = 0; i < by_pair.size(); ++i) {
+    const auto& [j, k] = pairs_[static_cast<std::size_t>(i)];
+    slope[j] += by_pair[i] * z[k];
+    slope[k] += by_pair[i] * z[j];
+  }
+  return to_axes_.transpose() * slope;
 }
 
 }  // namespace twinmap

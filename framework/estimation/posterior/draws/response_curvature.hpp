@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "framework/estimation/posterior/basin_search.hpp"
 
@@ -21,6 +23,8 @@ class ResponseCurvature {
   /// Half of what the bend adds to the squared residual at a point (u). Cost: some u^2 times the number of
   /// directions in which responses bend.
   double calcBend(const Eigen::VectorXd& point) const;
+  /// Its gradient (u).
+  Eigen::VectorXd calcBendSlope(const Eigen::VectorXd& point) const;
 
  private:
   /// axes: u x u, orthogonal columns that are a standard deviation long.
@@ -29,9 +33,13 @@ class ResponseCurvature {
   /// From r (m), J (m x u) and the columns of H_jk, j <= k, times 1 or, of j = k, 1/2 (m x u (u + 1) / 2).
   void reduce(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& bends);
 
+  /// z_j z_k of pairs_.
+  Eigen::VectorXd multiplyPairs(const Eigen::VectorXd& z) const;
+
   Eigen::VectorXd at_;
-  Eigen::MatrixXd to_axes_;   ///< u x u, the inverse of the axes
-  Eigen::MatrixXd bends_;     ///< k x u (u + 1) / 2, in the k directions in which responses bend
+  Eigen::MatrixXd to_axes_;                                   ///< u x u, the inverse of the axes
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> pairs_;  ///< of axes j <= k whose H_jk is not 0
+  Eigen::MatrixXd bends_;     ///< k x pairs, in the k directions in which responses bend
   Eigen::MatrixXd jacobian_;  ///< k x u, of the residual there
   Eigen::VectorXd residual_;  ///< k
 };

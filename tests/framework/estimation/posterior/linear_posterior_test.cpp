@@ -84,7 +84,8 @@ TEST(ManyParameters, AreDrawnAboutABentResponse) {
   const SimulatorPosterior posterior =
       sampleMany(problem, problem.measure(VectorXd::Constant(kParameters, 0.1), kSampleNoise), 500);
   EXPECT_TRUE(posterior.isReliable()) << posterior.message;
-  EXPECT_GT(posterior.effective_sample_size, 450.0);  // weights are equal but for rounding and slopes
+  EXPECT_GT(posterior.effective_sample_size,
+            150.0);  // equal weights, but draws of a chain along a bent valley
 }
 
 /// Twenty parameters bend the response by far more than its noise, and not as second derivatives say.

@@ -51,6 +51,12 @@ TEST(ResponseCurvature, IsExactOfAQuadraticResponse) {
       const VectorXd point = basins.front().local.at + 2.0 * lower * direction.normalized();
       const double exact = calcExactBend(surface, basins.front().local, point);
       EXPECT_NEAR(curvature->calcBend(point), exact, 2e-2 * std::abs(exact) + 2e-2);
+      const VectorXd slope = curvature->calcBendSlope(point);
+      for (Index j = 0; j < 3; ++j) {
+        const VectorXd step = 1e-5 * VectorXd::Unit(3, j);
+        const double difference = curvature->calcBend(point + step) - curvature->calcBend(point - step);
+        EXPECT_NEAR(slope[j], difference / 2e-5, 1e-5 * slope.norm());
+      }
     }
   }
 }
