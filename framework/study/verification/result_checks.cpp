@@ -77,8 +77,7 @@ Limits calcLimits(const Study& study, const PreparedData& data, const std::vecto
 }
 
 /// Processes are fitted at the hyperparameters of the file, without a search; a surrogate is trained again.
-TrainedMap trainAgain(const Study& study, const PreparedData& data, const std::filesystem::path& file) {
-  const TrainedFile stored = readTrainedFile(file, Hdf5Seal::kNone);  // differences are named below
+TrainedMap trainAgain(const Study& study, const PreparedData& data, const TrainedFile& stored) {
   const auto* processes = dynamic_cast<const OnlineProcesses*>(stored.model.map.get());
   if (processes == nullptr) {
     return trainChosenMap(study, data);
@@ -131,7 +130,12 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
   std::optional<TrainedMap> map;
   std::vector<Refined> refined;
   verification.check("maps.h5: fitted again", [&] {
-    map = trainAgain(study, data, folder / "maps.h5");
+    const TrainedFile stored = readTrainedFile(folder / "maps.h5", Hdf5Seal::kNone);  // differences: below
+    map = trainAgain(study, data, stored);
+    if (map->online.trust && stored.model.trust) {
+      map->online.trust->posteriors =
+          stored.model.trust->posteriors;  // the calibration's, which is not fitted
+    }
     refined = refineTestSamples(study, data, map->online).refined;
     const LabelledFeatures& test = data.labelled.test;
     Evaluation evaluation;
