@@ -7,12 +7,16 @@
 
 namespace twinmap {
 
-TrialFile parseTrialFile(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
-    throw ExperimentError("--trial " + text + ": must be NAME=FILE, the name of a trial and its recording");
+std::vector<TrialFile> parseTrialFiles(const std::vector<std::string>& texts) {
+  std::vector<TrialFile> files;
+  for (const std::string& text : texts) {
+    const std::size_t equals = text.find('=');
+    if (equals == 0 || equals == std::string::npos || equals + 1 == text.size()) {
+      throw ExperimentError("--trial " + text + ": must be NAME=FILE, the name of a trial and its recording");
+    }
+    files.push_back({text.substr(0, equals), text.substr(equals + 1)});
   }
-  return {text.substr(0, equals), text.substr(equals + 1)};
+  return files;
 }
 
 TrialReader::TrialReader(const ExperimentSpec& combined) {

@@ -13,8 +13,8 @@ struct TrialFile {
   std::string trial, file;
 };
 
-/// Of "NAME=FILE". Throws ExperimentError for another text.
-TrialFile parseTrialFile(const std::string& text);
+/// Of each "NAME=FILE" that --trial gives. Throws ExperimentError for another text.
+std::vector<TrialFile> parseTrialFiles(const std::vector<std::string>& texts);
 
 /// From recordings of trials to the features of an experiment that combines them (combineTrials). Immutable.
 class TrialReader {

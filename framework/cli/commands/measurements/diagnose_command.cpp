@@ -43,11 +43,8 @@ RecordedFeatures readOfTrials(const DiagnoseArguments& arguments, const Experime
     throw ExperimentError(
         "--page draws recordings of one trial; leave it out, or choose one by its own file");
   }
-  std::vector<TrialFile> files;
-  for (const std::string& text : arguments.trials) {
-    files.push_back(parseTrialFile(text));
-  }
-  return readTrials(experiment, files, arguments.starts, parseKnownValues(arguments.known));
+  return readTrials(experiment, parseTrialFiles(arguments.trials), arguments.starts,
+                    parseKnownValues(arguments.known));
 }
 
 RecordedFeatures readArguments(const DiagnoseArguments& arguments, const MeasurementReader& reader) {

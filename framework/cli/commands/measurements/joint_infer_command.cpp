@@ -18,17 +18,8 @@
 namespace twinmap::cli {
 namespace {
 
-/// What --trial gives.
-std::vector<TrialFile> listTrialFiles(const InferArguments& arguments) {
-  std::vector<TrialFile> files;
-  for (const std::string& text : arguments.trials) {
-    files.push_back(parseTrialFile(text));
-  }
-  return files;
-}
-
 std::vector<TrialFile> listFiles(const InferArguments& arguments, const JointInferrer& inferrer) {
-  std::vector<TrialFile> files = listTrialFiles(arguments);
+  std::vector<TrialFile> files = parseTrialFiles(arguments.trials);
   for (const TrialFile& one : files) {
     inferrer.getReader(one.trial);
   }
@@ -106,7 +97,7 @@ bool inferByRun(const InferArguments& arguments) {
   const TrialReader trials(source.getExperiment());
   std::vector<RecordedTable> tables;
   std::string names;
-  for (const TrialFile& one : listTrialFiles(arguments)) {
+  for (const TrialFile& one : parseTrialFiles(arguments.trials)) {
     tables.push_back(
         {one.trial, one.file, readTable(one.file, trials.get(one.trial).listColumns(), MissingCells::kKeep)});
     names += (names.empty() ? "" : ", ") + one.trial + "=" + one.file;

@@ -120,6 +120,7 @@ class LinearChain {
   MatrixXd walkAlongBends(int count) {
     constexpr int kWarmUp = 300;
     const importance::TiltedNormal density = makeLinear(surface_, basin_, curvature_);
+    const PriorMisfit prior = surface_.linearizePrior(basin_.local.at);
     const auto round = static_cast<std::uint64_t>(points_.cols());
     const auto draw = [&](std::uint64_t channel, Index i) {
       return random_.calcUniform(static_cast<std::uint64_t>(i), channel, round);
@@ -129,7 +130,7 @@ class LinearChain {
     options.warm_up = kWarmUp;
     options.draws = count;
     const markov::Chain chain = markov::sampleNuts(
-        [&](const VectorXd& z, VectorXd& gradient) { return calcWhitened(density, z, gradient); },
+        [&](const VectorXd& z, VectorXd& gradient) { return calcWhitened(density, prior, z, gradient); },
         linalg::solveLower(density.lower, at_ - density.mean),
         {[&](Index i) { return toStandardNormal(draw(kNormalChannel, i)); },
          [&](Index i) { return draw(kUniformChannel, i); }},
@@ -140,17 +141,17 @@ class LinearChain {
     return points;
   }
 
-  /// log of a tilted normal density at mean + lower z, and its gradient by z.
-  double calcWhitened(const importance::TiltedNormal& density, const VectorXd& z, VectorXd& gradient) const {
+  /// log of a tilted normal density at mean + lower z, and its gradient by z. prior: at the basin's minimum.
+  double calcWhitened(const importance::TiltedNormal& density, const PriorMisfit& prior, const VectorXd& z,
+                      VectorXd& gradient) const {
     const VectorXd point = density.mean + density.lower * z;
     const double log_factor = density.log_factor(point);
     if (!std::isfinite(log_factor)) {
       return log_factor;
     }
-    const PriorMisfit prior = surface_.linearizePrior(basin_.local.at);
-    VectorXd slope = calcPriorSlope(point) - prior.descent - curvature_->calcBendSlope(point);
-    slope +=
-        prior.information * (point - basin_.local.at) + kHalfWidthInformation * (point - basin_.local.at);
+    const VectorXd apart = point - basin_.local.at;
+    const VectorXd slope = calcPriorSlope(point) - prior.descent - curvature_->calcBendSlope(point) +
+                           prior.information * apart + kHalfWidthInformation * apart;
     gradient = density.lower.transpose() * slope - z;
     return log_factor - 0.5 * z.squaredNorm();
   }
@@ -235,10 +236,7 @@ MatrixXd addMedian(const MatrixXd& given, const Prior& prior, Index unknown, Ind
   if (drawn <= kManyUnknown || given.cols() > 0) {
     return given;
   }
-  MatrixXd more = given;
-  more.conservativeResize(unknown, given.cols() + 1);
-  more.rightCols(1) = prior.calcPoint(VectorXd::Constant(unknown, 0.5));
-  return more;
+  return prior.calcPoint(VectorXd::Constant(unknown, 0.5));
 }
 
 }  // namespace twinmap
