@@ -53,6 +53,15 @@ Eigen::MatrixXd solveSemidefinite(const Eigen::MatrixXd& a, const Eigen::MatrixX
 /// Cost: 2 n^3 / 3 flops.
 Eigen::VectorXd solveLinear(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
+/// The determinant of a square matrix: sign exp(log_size).
+struct LogDeterminant {
+  double log_size = 0.0;
+  double sign = 1.0;  ///< 0 if A is singular, of which log_size is -infinity
+};
+
+/// By LU factors with partial pivoting. Cost: 2 n^3 / 3 flops.
+LogDeterminant calcLogDeterminant(const Eigen::MatrixXd& a);
+
 /// The X (n x p) that minimises |A X - B|.
 struct LinearFit {
   Eigen::MatrixXd coefficients;  ///< X; where A has not full rank, the one of least norm

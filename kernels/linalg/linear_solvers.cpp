@@ -13,6 +13,13 @@ VectorXd solveLinear(const MatrixXd& a, const VectorXd& b) {
   return a.partialPivLu().solve(b);
 }
 
+LogDeterminant calcLogDeterminant(const MatrixXd& a) {
+  const Eigen::PartialPivLU<MatrixXd> factors(a);
+  const VectorXd diagonal = factors.matrixLU().diagonal();
+  return {diagonal.array().abs().log().sum(),
+          static_cast<double>(factors.permutationP().determinant()) * diagonal.array().sign().prod()};
+}
+
 LinearFit fitLinear(const MatrixXd& a, const MatrixXd& b) {
   const Orthogonal decomposition(a);
   return {decomposition.solve(b), decomposition.rank()};

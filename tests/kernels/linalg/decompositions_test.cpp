@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <limits>
 
@@ -101,6 +102,19 @@ TEST(SolveLinear, ByHandAndByDefinition) {
   const MatrixXd larger = randomMatrix(kSize, kSize, 15);
   const VectorXd b = randomMatrix(kSize, 1, 16);
   EXPECT_LT((larger * solveLinear(larger, b) - b).norm(), 1e-10);
+}
+
+TEST(LogDeterminant, ByHandAndOfProducts) {
+  MatrixXd a(2, 2);
+  a << 0, 2, 4, 1;  // -8
+  EXPECT_NEAR(calcLogDeterminant(a).log_size, std::log(8.0), 1e-14);
+  EXPECT_EQ(calcLogDeterminant(a).sign, -1.0);
+  const MatrixXd b = randomMatrix(kSize, kSize, 19), c = randomMatrix(kSize, kSize, 20);
+  const LogDeterminant of_b = calcLogDeterminant(b), of_c = calcLogDeterminant(c);
+  const LogDeterminant of_both = calcLogDeterminant(b * c);
+  EXPECT_NEAR(of_both.log_size, of_b.log_size + of_c.log_size, 1e-9);
+  EXPECT_EQ(of_both.sign, of_b.sign * of_c.sign);
+  EXPECT_EQ(calcLogDeterminant(MatrixXd::Zero(2, 2)).sign, 0.0);
 }
 
 TEST(LinearFit, LeavesAResidualOrthogonalToTheColumns) {

@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "framework/estimation/posterior/basin_search.hpp"
-#include "framework/estimation/posterior/draws/response_curvature.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {
@@ -17,14 +16,10 @@ constexpr Eigen::Index kFewUnknown = 8;
 /// bounds as they are, so that what the measurement does not determine keeps its prior exactly
 /// (sampleEllipticalSlices, without a simulation). Each is weighted by its likelihood over the linear one:
 /// the effective sample size and the Pareto shape show where the response is too far from linear for that.
-/// Rounds of `draws` follow, as many as `most_rounds`, while the effective sample size is below
-/// kSmallestSampleSize and as many rounds may reach it. Cost: one simulation a draw, whatever the number of
+/// Rounds of `draws` (importance::drawInRounds). Cost: one simulation a draw, whatever the number of
 /// parameters.
-/// `curvature`, where it is given, bends that response, so that what is left for the weights is its third
-/// derivatives.
 importance::AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws,
-                                           int most_rounds, std::uint64_t seed,
-                                           const ResponseCurvature* curvature = nullptr);
+                                           int most_rounds, std::uint64_t seed);
 
 /// How far from linear the response is where that posterior has its mass: the variance of the logarithms of
 /// some draws' weights, infinite where one of them cannot be simulated. What is straight in the parameters is

@@ -10,6 +10,7 @@
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/draws/local_walk.hpp"
 #include "framework/estimation/posterior/draws/marginal_surface.hpp"
+#include "framework/estimation/posterior/draws/randomized_minima.hpp"
 #include "framework/estimation/posterior/draws/valley_places.hpp"
 #include "framework/estimation/posterior/straight_ridge.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -149,14 +150,14 @@ AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, b
   if (!has_many) {
     return sampleLinearized(surface, basin, options.draws, 1, options.seed);
   }
-  std::optional<ResponseCurvature> curvature;
   const double nonlinearity =
       landscape.nonlinearity ? *landscape.nonlinearity : calcNonlinearity(surface, basin, options.seed);
   if (!(nonlinearity < kNearlyLinear)) {
-    curvature = ResponseCurvature::measure(surface, basin);
+    if (const auto minima = RandomizedMinima::measure(surface, basin)) {
+      return sampleRandomizedMinima(surface, *minima, options.draws, kMostRounds, options.seed);
+    }
   }
-  return sampleLinearized(surface, basin, options.draws, kMostRounds, options.seed,
-                          curvature ? &*curvature : nullptr);
+  return sampleLinearized(surface, basin, options.draws, kMostRounds, options.seed);
 }
 
 /// Where chains begin: all over the valley, some at the basins' minima. From a minimum in a corner of the box
