@@ -3,9 +3,11 @@
     bench/joint.py TWINMAP FILE.yaml                     # 10 machines: the seven-joint arm takes a minute or two each
     bench/joint.py TWINMAP FILE.yaml --first 11 --machines 20
 
-FILE has `trials:`. A line a machine: statuses, intervals that hold the truth, the root mean square and the largest of the
-errors in standard deviations (about 1 and below 4 where they are right, whatever the prior leaves unknown), time, and the
-effective sample sizes of the recordings alone; then the share of all intervals that hold.
+FILE has `trials:`. A line a machine: statuses, intervals that hold the truth, the largest error in standard deviations, the
+squared errors in units of the covariance over their number (1, with a standard deviation of sqrt(2 / number), where they are
+right) with the probability of more, time, and the effective sample sizes of the recordings alone; then the share of all
+intervals that hold. The intervals of a machine hold or fail together where parameters share what is not determined (of an arm
+whose angles alone are measured, one factor of all forces and masses); the squared errors do not.
 """
 import argparse
 import json
@@ -17,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import yaml
+from scipy.stats import chi2
 
 
 def draw(parameter, rng):
@@ -58,8 +61,13 @@ def describe(seed, estimate, truth, seconds):
     held = sum(found[name]["lower"] <= value <= found[name]["upper"] for name, value in truth.items())
     errors = np.array([(found[name]["mean"] - value) / found[name]["sd"] for name, value in truth.items()])
     alone = ", ".join(f"{trial['posterior']['effective_sample_size']:.0f}" for trial in estimate["trials"])
-    line = f"{seed}: {', '.join(estimate['statuses'])}; {held} of {len(truth)} hold; errors {np.sqrt(np.mean(errors**2)):.2f}"
-    print(f"{line}, at most {np.abs(errors).max():.2f} sd; {seconds:.0f} s; alone worth {alone} draws", flush=True)
+    apart = np.array([found[name]["mean"] - value for name, value in truth.items()])
+    squared = apart @ np.linalg.solve(np.array(estimate["covariance"]), apart)
+    line = (
+        f"{seed}: {', '.join(estimate['statuses'])}; {held} of {len(truth)} hold; at most {np.abs(errors).max():.2f} sd"
+    )
+    line += f"; squared errors {squared / len(truth):.2f} (p {chi2.sf(squared, len(truth)):.3f})"
+    print(f"{line}; {seconds:.0f} s; alone worth {alone} draws", flush=True)
     return held
 
 
