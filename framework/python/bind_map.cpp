@@ -1,8 +1,11 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/segments/segment_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/python/arrays.hpp"
@@ -80,6 +83,25 @@ InferredEstimate inferFeatures(PythonMap& map, const Vector& features, const Inf
   });
 }
 
+/// A recording in segments of so many seconds. Columns: without these, the file that the name is of.
+InferredEstimate inferSegments(const PythonMap& map, const std::string& name,
+                               const std::optional<NamedVectors>& columns, double length,
+                               const InferRequest& request) {
+  const ExperimentSpec& experiment = map.getReader().getExperiment();
+  const int draws = request.options.posterior_draws;
+  const SegmentInference inference(experiment, length, collectKnown(experiment.model.inputs, request.known),
+                                   draws > 0 ? draws : SegmentInference::kDefaultDraws);
+  const Table table = readOrMakeTable(name, columns, inference.listColumns());
+  const py::gil_scoped_release release;
+  InferredMeasurement measurement = inference.infer(table, request.start);
+  Eigen::MatrixXd& points = measurement.posterior->estimate.draws.points;
+  const auto machine = static_cast<Eigen::Index>(experiment.model.parameters.size());
+  points = Eigen::MatrixXd(
+      points.topRows(std::min(machine, points.rows())));  // nuisances have an order of their own
+  Estimate estimate = selectEstimate(measurement);
+  return {std::move(measurement), std::move(estimate)};
+}
+
 py::tuple predict(const PythonMap& map, const Rows& features, const Rows& known, int threads) {
   const Inferrer& inferrer = map.getTrained();
   const auto inputs = static_cast<Eigen::Index>(inferrer.getExperiment().model.inputs.size());
@@ -105,14 +127,17 @@ const ModelSpec& getModel(const PythonMap& map) {
   return map.getReader().getExperiment().model;
 }
 
+const std::vector<FeatureInfo>& listFeatures(const PythonMap& map, const InferredEstimate& inferred) {
+  return inferred.measurement.segments ? inferred.measurement.segments->samples
+                                       : map.getReader().getExtractor().getInfos();
+}
+
 std::string writeJson(const PythonMap& map, const InferredEstimate& inferred) {
-  return makeInferenceJson(inferred.measurement, getModel(map).parameters,
-                           map.getReader().getExtractor().getInfos());
+  return makeInferenceJson(inferred.measurement, getModel(map).parameters, listFeatures(map, inferred));
 }
 
 std::string writeText(const PythonMap& map, const InferredEstimate& inferred) {
-  return makeInferenceTable(inferred.measurement, getModel(map).parameters,
-                            map.getReader().getExtractor().getInfos());
+  return makeInferenceTable(inferred.measurement, getModel(map).parameters, listFeatures(map, inferred));
 }
 
 void bindPosterior(py::module_& module) {
@@ -184,6 +209,8 @@ void bindMap(py::module_& module) {
       .def("infer_file", &inferFile)
       .def("infer_columns", &inferColumns)
       .def("infer_features", &inferFeatures)
+      .def("infer_segments", &inferSegments, py::arg("name"), py::arg("columns"), py::arg("length"),
+           py::arg("request"))
       .def("write_json", &writeJson)
       .def("write_text", &writeText)
       .def("predict", &predict, py::arg("features"), py::arg("inputs"), py::arg("threads"))

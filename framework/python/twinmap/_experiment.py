@@ -12,7 +12,7 @@ from ._arguments import PathLike, Points, choose_threads, list_known, list_overr
 from ._errors import ExperimentError
 from ._map import Estimate, Measurement, infer
 from ._progress import ProgressChoice, ProgressReport
-from ._recordings import Diagnosis, Recording, diagnose
+from ._recordings import Diagnosis, Recording, diagnose, read_recording
 from ._results import Results
 from ._twinmap import Quantity
 
@@ -196,6 +196,29 @@ class Experiment:
         """
         request = _twinmap.InferRequest(list_known(known), start, None, draws, "", profiles)
         return infer(self._get_inferring(), measurement, request)
+
+    def infer_segments(
+        self,
+        recording: Recording,
+        length: float,
+        *,
+        known: Optional[Mapping[str, float]] = None,
+        start: Optional[float] = None,
+        draws: int = 2048,
+    ) -> Estimate:
+        """Infers the parameters of a recording that is cut into segments of `length` s, each from an initial state of
+        its own, with the excitation that the recording has (docs/how-to/combine-recordings.md): for what is unstable or
+        chaotic.
+
+        recording: a file (CSV, MATLAB, HDF5), or a DataFrame or mapping from columns to samples. known, start, draws,
+        errors: as infer() has them.
+        """
+        if not length > 0.0:
+            raise ValueError(f"length: must be above 0 (s), not {length!r}")
+        request = _twinmap.InferRequest(list_known(known), start, None, draws, "", False)
+        inferring = self._get_inferring()
+        name, columns = read_recording(recording, 1)
+        return Estimate(inferring.infer_segments(name, columns, length, request), inferring, inferring.parameters)
 
     def diagnose(
         self,

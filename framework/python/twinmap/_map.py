@@ -41,7 +41,7 @@ class Posterior:
             self.quantiles = pd.DataFrame(
                 sampled.quantiles, columns=names, index=pd.Index(_PROBABILITIES, name="probability")
             )
-            self.draws = pd.DataFrame(sampled.draws, columns=unknown)
+            self.draws = pd.DataFrame(sampled.draws, columns=unknown[: sampled.draws.shape[1]])
             self.weights: np.ndarray = sampled.weights
 
     @property

@@ -13,7 +13,7 @@ Recording = Union[PathLike, pd.DataFrame, Mapping[str, Any]]
 _Columns = Optional[List[Tuple[str, np.ndarray]]]
 
 
-def _read(recording: Recording, number: int) -> Tuple[str, _Columns]:
+def read_recording(recording: Recording, number: int) -> Tuple[str, _Columns]:
     """What it is called, and its columns unless it is a file."""
     if isinstance(recording, (str, os.PathLike)):
         return os.fspath(recording), None
@@ -24,7 +24,7 @@ def list_recordings(recordings: Union[Recording, Sequence[Recording]]) -> List[T
     """Of one recording or several."""
     if isinstance(recordings, (str, os.PathLike, pd.DataFrame, Mapping)):
         recordings = [recordings]
-    return [_read(recording, number) for number, recording in enumerate(recordings, start=1)]
+    return [read_recording(recording, number) for number, recording in enumerate(recordings, start=1)]
 
 
 def list_trials(

@@ -6,7 +6,7 @@ import pandas as pd
 
 import twinmap
 from package_support import FolderTestCase
-from support import call
+from support import EXPERIMENTS, call
 
 CART = """
 name: cart
@@ -49,6 +49,22 @@ class Recordings(FolderTestCase):
 
     def measure_text(self, text, seed):
         return twinmap.Experiment.from_yaml(text).simulate({"k": 95, "d": 1.2}, noise=True, seed=seed).to_frame()
+
+    def test_segments_have_the_estimate_of_the_command(self):
+        levitation = EXPERIMENTS / "mechanisms" / "magnetic_levitation.yaml"
+        recording = levitation.with_suffix(".csv")
+        expected = json.loads(call("infer", levitation, recording, "--segments", "0.1", "--json").stdout)
+        experiment = twinmap.Experiment.from_file(levitation)
+        found = experiment.infer_segments(pd.read_csv(recording), 0.1)
+        self.assertEqual(found.statuses, ["ok"])
+        self.assertEqual(found.details["segments"], expected["segments"])
+        for name, one in expected["parameters"].items():
+            mean, stddev = found[name]
+            self.assertAlmostEqual(mean, one["mean"], delta=1e-9 * abs(one["mean"]))
+            self.assertAlmostEqual(stddev, one["sd"], delta=1e-9 * one["sd"])
+        self.assertIn("20 segments of 0.1 s", repr(found))
+        with self.assertRaisesRegex(ValueError, "length: must be above 0"):
+            experiment.infer_segments(recording, -1.0)
 
     def test_trials_have_one_estimate_which_is_the_commands(self):
         free, step = self.measure("free"), self.measure("step")

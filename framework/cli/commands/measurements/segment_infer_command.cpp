@@ -12,10 +12,6 @@
 namespace twinmap::cli {
 namespace {
 
-/// Of a round, unless given: a thousand segments make a posterior narrow and normal, whose standard deviation
-/// is then right to 2 %.
-constexpr int kDraws = 2048;
-
 void requireSegmentArguments(const InferArguments& arguments) {
   if (!arguments.trials.empty() || arguments.joint || arguments.windows) {
     throw ExperimentError("--segments infers each file by itself; leave --joint, --trial and --windows out");
@@ -62,7 +58,8 @@ void inferInSegments(const InferArguments& arguments) {
   requireSegmentArguments(arguments);
   ExperimentSpec experiment = loadWithoutTrials(findExperimentFile(arguments.run));
   const Eigen::VectorXd known = collectKnown(experiment.model.inputs, parseKnownValues(arguments.known));
-  const int draws = arguments.posterior_draws > 0 ? arguments.posterior_draws : kDraws;
+  const int draws =
+      arguments.posterior_draws > 0 ? arguments.posterior_draws : SegmentInference::kDefaultDraws;
   const SegmentInference inference(std::move(experiment), *arguments.segments, known, draws);
   std::vector<std::optional<double>> starts(arguments.starts.begin(), arguments.starts.end());
   if (starts.empty()) {
