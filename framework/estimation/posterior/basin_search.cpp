@@ -20,6 +20,10 @@ namespace {
 /// Of chi-square, between the best basin and others: for the same volume they bear a share of 4e-6.
 constexpr double kBasinAbove = 25.0;
 
+/// Of the searches, that end in the best basin where noise does not explain it: half of the scouts, which are
+/// few; of all batches any, as the count of confirmations says enough.
+constexpr double kSettledScouts = 0.5, kSettledBatches = 0.0;
+
 /// In standard deviations of the basin.
 double calcDistance(const Basin& basin, const VectorXd& at) {
   const VectorXd apart = at - basin.local.at;
@@ -33,13 +37,14 @@ bool isExplained(const std::vector<Basin>& basins) {
 
 /// The ends of searches of more and more of the response, each from where the last one ended: a chaotic
 /// response has many minima, but its beginning has few, and they lie where the next ones do.
-std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
+std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
+                                        const BasinSearchOptions& options) {
   constexpr int kIterations = 8;  // where a window ends is but the next one's start
   const std::size_t windows = surface.countWindows();
   for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
     surface.setWindow(i);
     SearchTeam team(surface, starts);
-    team.run(kIterations);
+    team.run(kIterations, options.converged_gain);
     const std::vector<LocalSurface> ends = team.listEnds();
     starts.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
     for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -51,7 +56,7 @@ std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
     return {};
   }
   SearchTeam team(surface, starts);
-  team.run(max_iterations);
+  team.run(options.max_iterations, options.converged_gain);
   return team.listEnds();
 }
 
@@ -98,7 +103,7 @@ MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, con
 /// Places along the flattest direction of basins, both ways as far as the bounds allow, on the floor of its
 /// valley: corrected at right angles to it. Impacts and sticking cut a valley into several hills, each so
 /// narrow that searches from afar end in any of them.
-MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins) {
+MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins, double converged_gain) {
   constexpr double kReaches[] = {-8.0, -4.0, 4.0, 8.0};  // standard deviations
   constexpr std::size_t kMost = 2;
   constexpr int kIterations = 4;
@@ -121,7 +126,7 @@ MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins) 
     return places;
   }
   SearchTeam team(surface, places, held);
-  team.run(kIterations);
+  team.run(kIterations, converged_gain);
   const std::vector<LocalSurface> ends = team.listEnds();
   places.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
   for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -168,13 +173,13 @@ class BasinHunt {
   void search(const MatrixXd& starts) {
     SearchTeam team(surface_, starts);
     team.setKnown(found_.basins);
-    team.run(options_.max_iterations);
+    team.run(options_.max_iterations, options_.converged_gain);
     add(team.listEnds());
     found_.starts += static_cast<int>(starts.cols());
   }
 
   void searchWindows(const MatrixXd& starts) {
-    add(searchGrowing(surface_, starts, options_.max_iterations));
+    add(searchGrowing(surface_, starts, options_));
     found_.starts += static_cast<int>(starts.cols());
   }
 
@@ -193,7 +198,8 @@ class BasinHunt {
     constexpr int kMost = 3;
     for (int i = 0; i < kMost && isExplained() && found_.starts >= options_.starts; ++i) {
       const double least = found_.basins.front().local.misfit;
-      if (const MatrixXd places = followFloors(surface_, found_.basins); places.cols() > 0) {
+      if (const MatrixXd places = followFloors(surface_, found_.basins, options_.converged_gain);
+          places.cols() > 0) {
         search(places);
       }
       if (!(found_.basins.front().local.misfit < least)) {
@@ -225,6 +231,11 @@ MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
   const MatrixXd unit =
       sampleUnitCube(sobol, static_cast<int>(dimensions), seed, RandomPurpose::kBasinStarts);
   return 2.0 * unit.array() - 1.0;
+}
+
+double chooseConvergedGain(Index unknown) {
+  constexpr double kGainOfMany = 0.1;
+  return unknown > kManyUnknown ? kGainOfMany : kConvergedGain;
 }
 
 bool liesIn(const Basin& basin, const VectorXd& at) {
@@ -277,7 +288,7 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
       return hunt.getFound();
     }
   }
-  if (!hunt.isExplained() && hunt.isSettled(0.5)) {
+  if (!hunt.isExplained() && hunt.isSettled(kSettledScouts)) {
     return hunt.getFound();
   }
   MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
@@ -291,7 +302,7 @@ BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint6
       hunt.searchWindows(all);
     }
     again.resize(Eigen::NoChange, 0);
-    if (hunt.getFound().basins.empty() || hunt.isConfirmed() || hunt.isSettled(0.0)) {
+    if (hunt.getFound().basins.empty() || hunt.isConfirmed() || hunt.isSettled(kSettledBatches)) {
       break;
     }
   }

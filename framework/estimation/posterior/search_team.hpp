@@ -21,7 +21,8 @@ class SearchTeam {
 
   /// Basins of the same surface that earlier searches have found. Before run().
   void setKnown(const std::vector<Basin>& known) { known_ = known; }
-  void run(int max_iterations);
+  /// converged_gain: BasinSearchOptions::converged_gain.
+  void run(int max_iterations, double converged_gain = kConvergedGain);
 
   /// Where search i is.
   const LocalSurface& getLocal(Eigen::Index i) const { return searches_[static_cast<std::size_t>(i)].local; }
@@ -39,9 +40,9 @@ class SearchTeam {
     std::vector<double> factors{};  ///< of the damping, that an iteration tries
   };
 
-  bool improve();
+  bool improve(double converged_gain);
   std::vector<Search*> listActive();
-  void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to);
+  void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to, double converged_gain);
   void settle(Search& search);
   const LocalSurface* findBest() const;
   void giveUpHopeless();

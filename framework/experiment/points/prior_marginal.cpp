@@ -1,10 +1,14 @@
 #include "framework/experiment/points/prior_marginal.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+
+#include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
 
@@ -95,6 +99,31 @@ Bounds calcPriorRange(const PriorSpec& prior) {
   const double reach = boost::math::quantile(
       boost::math::complement(boost::math::students_t_distribution<>(student.degrees), kTail));
   return {student.location - reach * student.scale, student.location + reach * student.scale, {}};
+}
+
+std::string shortenOfPrior(double value) {
+  constexpr int kDigits = 6;
+  return toShortText(value, kDigits);
+}
+
+std::string describeMarginal(const PriorSpec& prior, const Bounds& bounds) {
+  if (const auto* normal = std::get_if<NormalPrior>(&prior.kind)) {
+    return fmt::format("normal {} +- {}", shortenOfPrior(normal->mean), shortenOfPrior(normal->stddev));
+  }
+  if (const auto* lognormal = std::get_if<LognormalPrior>(&prior.kind)) {
+    return fmt::format("lognormal {} within a factor of {}", shortenOfPrior(lognormal->median),
+                       shortenOfPrior(lognormal->factor));
+  }
+  if (const auto* student = std::get_if<StudentPrior>(&prior.kind)) {
+    return fmt::format("Student's t {} +- {}", shortenOfPrior(student->location),
+                       shortenOfPrior(student->scale));
+  }
+  const std::string range =
+      fmt::format("from {} to {}", shortenOfPrior(bounds.lower), shortenOfPrior(bounds.upper));
+  if (const auto* beta = std::get_if<BetaPrior>(&prior.kind)) {
+    return fmt::format("beta({}, {}) {}", shortenOfPrior(beta->alpha), shortenOfPrior(beta->beta), range);
+  }
+  return "log-uniform " + range;
 }
 
 }  // namespace twinmap

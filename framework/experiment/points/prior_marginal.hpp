@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "framework/experiment/model/parameter_spec.hpp"
 
 namespace twinmap {
@@ -24,5 +26,11 @@ double calcMarginalQuantile(const PriorSpec& prior, const Bounds& bounds, double
 /// The central interval of probability .9999: the bounds of a parameter that states none. Of a normal,
 /// lognormal or Student prior, which have a range of their own (PriorSpec::hasRange).
 Bounds calcPriorRange(const PriorSpec& prior);
+
+/// A number as texts about priors give it, with six digits.
+std::string shortenOfPrior(double value);
+/// "normal 2 +- 0.1", "log-uniform from 1 to 4": a prior of any kind in words, numbers in the parameter's
+/// unit.
+std::string describeMarginal(const PriorSpec& prior, const Bounds& bounds);
 
 }  // namespace twinmap

@@ -4,46 +4,24 @@
 
 #include <cmath>
 
-#include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/points/prior_marginal.hpp"
 
 namespace twinmap {
 namespace {
 
-std::string shorten(double value) {
-  constexpr int kDigits = 6;
-  return toShortText(value, kDigits);
-}
-
-std::string describeKind(const PriorSpec& prior, const Bounds& bounds) {
-  if (const auto* normal = std::get_if<NormalPrior>(&prior.kind)) {
-    return fmt::format("normal {} +- {}", shorten(normal->mean), shorten(normal->stddev));
-  }
-  if (const auto* lognormal = std::get_if<LognormalPrior>(&prior.kind)) {
-    return fmt::format("lognormal {} within a factor of {}", shorten(lognormal->median),
-                       shorten(lognormal->factor));
-  }
-  if (const auto* student = std::get_if<StudentPrior>(&prior.kind)) {
-    return fmt::format("Student's t {} +- {}", shorten(student->location), shorten(student->scale));
-  }
-  const std::string range = fmt::format("from {} to {}", shorten(bounds.lower), shorten(bounds.upper));
-  if (const auto* beta = std::get_if<BetaPrior>(&prior.kind)) {
-    return fmt::format("beta({}, {}) {}", shorten(beta->alpha), shorten(beta->beta), range);
-  }
-  return "log-uniform " + range;
-}
-
 std::string describeGroup(const PriorGroupSpec& group) {
   if (const auto* pair = std::get_if<CorrelatedPriors>(&group.kind)) {
     return fmt::format("correlation of {} and {} {}", pair->names[0].text, pair->names[1].text,
-                       shorten(pair->correlation));
+                       shortenOfPrior(pair->correlation));
   }
   std::string text;
   if (const auto* joint = std::get_if<JointNormalPrior>(&group.kind)) {
     const std::size_t n = joint->names.size();
     for (std::size_t k = 0; k < n; ++k) {
       text += fmt::format("{}{} normal {} +- {}", text.empty() ? "" : ", ", joint->names[k].text,
-                          shorten(joint->mean[k]), shorten(std::sqrt(joint->covariance[k * n + k])));
+                          shortenOfPrior(joint->mean[k]),
+                          shortenOfPrior(std::sqrt(joint->covariance[k * n + k])));
     }
     text += n > 1 ? " (jointly)" : "";
   }
@@ -60,7 +38,7 @@ std::string describePriors(const ModelSpec& model) {
   for (const ParameterSpec& parameter : unknown) {
     if (parameter.prior) {
       ++stated;
-      add(fmt::format("{} {}{}{}", parameter.name.text, describeKind(*parameter.prior, parameter.bounds),
+      add(fmt::format("{} {}{}{}", parameter.name.text, describeMarginal(*parameter.prior, parameter.bounds),
                       parameter.unit.empty() ? "" : " ", parameter.unit));
     }
   }

@@ -1,0 +1,176 @@
+#include "framework/inference/simulator_sampler.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/base/text/source_location.hpp"
+#include "framework/estimation/posterior/noise/noise_candidates.hpp"
+#include "framework/estimation/ridges/simulated_ridges.hpp"
+#include "framework/experiment/points/prior.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// Draws that stand for the posterior, each once at most: where the sum of the weights passes equal steps.
+std::vector<Index> chooseDraws(const VectorXd& weights) {
+  constexpr double kDraws = 32.0;
+  std::vector<Index> chosen;
+  double passed = 0.0;
+  for (Index i = 0; i < weights.size(); ++i) {
+    const double before = passed;
+    passed += weights[i];
+    if (std::floor(passed * kDraws + 0.5) > std::floor(before * kDraws + 0.5)) {
+      chosen.push_back(i);
+    }
+  }
+  return chosen;
+}
+
+/// Whether a fit under another hypothesis of the noise explains a measurement.
+bool explains(const SimulatorFit& fit, Index residuals) {
+  constexpr double kMaxOutliers = 0.05;  // of the samples
+  const bool is_physics = std::any_of(fit.noise.begin(), fit.noise.end(), [](const NoiseReport& report) {
+    return report.isStated() && report.found.autoregression.size() > 0 && isLargerThanStated(report.found);
+  });
+  return fit.isPlausible() && !is_physics &&
+         static_cast<double>(fit.outliers.size()) <= kMaxOutliers * static_cast<double>(residuals);
+}
+
+}  // namespace
+
+SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws) {
+  if (draws < kMinPosteriorDraws) {
+    throw ExperimentError(
+        fmt::format("a posterior needs at least {} draws, not {}", kMinPosteriorDraws, draws));
+  }
+  SimulatorPosteriorOptions options;
+  options.draws = draws;
+  options.seed = experiment.seed;
+  return options;
+}
+
+PosteriorEstimate SimulatorSampler::sampleUnder(const NoiseHypothesis& noise, const VectorXd& features,
+                                                const VectorXd& known, const MatrixXd& given,
+                                                const SimulatorPosteriorOptions& options) const {
+  const auto u = static_cast<Index>(getUnknown().size());
+  PosteriorProblem problem{getUnknown(), getModelSpec().priors, {makeTrial(features, known)}, u};
+  problem.trials.front().noise = noise;
+  return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
+}
+
+PosteriorEstimate SimulatorSampler::samplePosterior(const VectorXd& features, const VectorXd& known,
+                                                    const NoiseHypothesis& stated, const MatrixXd& given,
+                                                    const SimulatorPosteriorOptions& options) const {
+  const bool is_known = stated.outputs.empty();
+  PosteriorEstimate sampled =
+      sampleUnder(is_known ? stated : guessSizes(stated, *makeTrial(features, known).model, features),
+                  features, known, given, options);
+  if (!is_known && sampled.fit->isSimulated()) {
+    sampled = sampleUnder(stated, features, known, sampled.fit->best, options);
+  }
+  if (!sampled.fit->isSimulated() || sampled.fit->isPlausible()) {
+    return sampled;
+  }
+  if (!readsOutputs()) {
+    return sampled;
+  }
+  for (const NoiseHypothesis& noise : listNoise(stated, features, known, sampled.fit->best)) {
+    PosteriorEstimate other = sampleUnder(noise, features, known, sampled.fit->best, options);
+    if (other.isReliable() && explains(*other.fit, sampled.fit->residual.size())) {
+      return other;
+    }
+  }
+  return sampled;
+}
+
+double SimulatorSampler::findLeastChiSquare(const VectorXd& features, const VectorXd& known,
+                                            Index all) const {
+  const auto there = static_cast<double>(features.array().isFinite().count()), of = static_cast<double>(all);
+  if (2.0 * there <= of) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return of / there *
+         twinmap::findLeastChiSquare({getUnknown(),
+                                      getModelSpec().priors,
+                                      {makeTrial(features, known)},
+                                      static_cast<Index>(getUnknown().size())});
+}
+
+PosteriorEstimate SimulatorSampler::makeEstimate(const MeasuredTrial& trial,
+                                                 SimulatorPosterior posterior) const {
+  std::vector<FeatureInfo> infos = getExtractor().getInfos();
+  if (trial.own_model) {
+    infos.clear();
+    for (const Index i : trial.own_model->getWhole().features) {
+      infos.push_back(trial.own_model->getExtractor().getInfos()[static_cast<std::size_t>(i)]);
+    }
+  } else if (posterior.degrees > 0.0) {
+    posterior.standardized.residual = getModel().placeResidual(posterior.standardized.residual);
+  }
+  PosteriorEstimate made = makePosteriorEstimate(posterior, getUnknown(),
+                                                 static_cast<Index>(getModelSpec().parameters.size()), infos);
+  nameNoise(made.fit->noise);
+  return made;
+}
+
+PosteriorEstimate SimulatorSampler::makeFailed(const VectorXd& features, const VectorXd& known,
+                                               const std::string& reason) const {
+  SimulatorPosterior posterior;
+  posterior.message = reason;
+  return makeEstimate(makeTrial(features, known), std::move(posterior));
+}
+
+bool SimulatorSampler::readsOutputs() const {
+  const std::vector<OutputSpec>& outputs = getModelSpec().outputs;
+  const std::vector<std::string>& read = getSimulator().getLayout().output_names;
+  return std::all_of(read.begin(), read.end(), [&](const std::string& name) {
+    return std::any_of(outputs.begin(), outputs.end(),
+                       [&](const OutputSpec& output) { return output.name.text == name; });
+  });
+}
+
+std::vector<NoiseHypothesis> SimulatorSampler::listNoise(const NoiseHypothesis& stated,
+                                                         const VectorXd& features, const VectorXd& known,
+                                                         const VectorXd& best) const {
+  const MeasuredTrial trial = makeTrial(features, known);
+  const SearchBox box(getUnknown(), {0, static_cast<Index>(getUnknown().size())}, trial.held);
+  Misfit misfit(updSimulator(), *trial.model, box, features);
+  VectorXd point = trial.held;
+  point.head(best.size()) = best;
+  const LocalMisfit local = misfit.linearize(box.normalize(point));
+  if (!local.status.ok) {
+    return {};
+  }
+  return listNoiseHypotheses(stated, {trial.model, local.residual, local.jacobian});
+}
+
+MatrixXd SimulatorSampler::listRidgePoints(const PosteriorEstimate& posterior) const {
+  const BoundedDraws& draws = posterior.estimate.draws;
+  if (!draws.isGiven()) {
+    return posterior.places;
+  }
+  const bool may_have = !Prior(getUnknown(), getModelSpec().priors).isUniform() ||
+                        mayHaveRidges(draws, getModelSpec().parameters);
+  return may_have ? MatrixXd(draws.points(Eigen::all, chooseDraws(draws.weights))) : MatrixXd();
+}
+
+std::vector<Ridge> SimulatorSampler::findRidges(const PosteriorEstimate& posterior,
+                                                const VectorXd& known) const {
+  const MatrixXd places = listRidgePoints(posterior);
+  if (places.cols() == 0 || !getSimulator().hasDerivatives()) {
+    return {};
+  }
+  MatrixXd points(places.rows() + known.size(), places.cols());
+  points << places, known.replicate(1, places.cols());
+  return simulateRidges(getSimulator(), getExtractor(), getNoise(), getModelSpec(), points, 1);
+}
+
+}  // namespace twinmap
