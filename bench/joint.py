@@ -4,9 +4,9 @@
     bench/joint.py TWINMAP FILE.yaml --first 11 --machines 20
 
 FILE has `trials:`. A line a machine: statuses, intervals that hold the truth, the largest error in standard deviations, the
-squared errors in units of the covariance over their number (1, with a standard deviation of sqrt(2 / number), where they are
-right) with the probability of more, time, and the effective sample sizes of the recordings alone; then the share of all
-intervals that hold. The intervals of a machine hold or fail together where parameters share what is not determined (of an arm
+squared errors in units of the covariance over their number (above 1 where few draws tell the covariance) with the probability
+of more (Hotelling, with as many draws as the effective sample size), time, and the effective sample sizes together and of the
+recordings alone; then the share of all intervals that hold. The intervals of a machine hold or fail together where parameters share what is not determined (of an arm
 whose angles alone are measured, one factor of all forces and masses); the squared errors do not.
 """
 import argparse
@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 import yaml
-from scipy.stats import chi2
+from scipy.stats import f
 
 
 def draw(parameter, rng):
@@ -66,8 +66,8 @@ def describe(seed, estimate, truth, seconds):
     line = (
         f"{seed}: {', '.join(estimate['statuses'])}; {held} of {len(truth)} hold; at most {np.abs(errors).max():.2f} sd"
     )
-    line += f"; squared errors {squared / len(truth):.2f} (p {chi2.sf(squared, len(truth)):.3f})"
-    print(f"{line}; {seconds:.0f} s; alone worth {alone} draws", flush=True)
+    line += f"; squared errors {squared / n:.2f} (p {chance:.3f})"
+    print(f"{line}; {seconds:.0f} s; worth {draws:.0f} draws, alone {alone}", flush=True)
     return held
 
 

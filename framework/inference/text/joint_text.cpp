@@ -218,6 +218,8 @@ std::string makeJointJson(const JointInference& inferred, const std::vector<Para
   } else {
     json["message"] = inferred.joint.message;
   }
+  json["effective_sample_size"] = inferred.joint.effective_sample_size;
+  json["pareto_shape"] = inferred.joint.pareto_shape;
   if (inferred.agreement) {
     json["agreement"] = {{"agrees", !inferred.disagrees()},
                          {"p_value", inferred.agreement->p_value},

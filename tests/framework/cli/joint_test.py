@@ -150,6 +150,7 @@ class Joint(FolderTestCase):
         found = json.loads(self.infer(run, self.a, self.b, "--joint", "--json"))
         expected = json.loads(self.infer(self.experiment, self.a, self.b, "--joint", "--json"))
         self.assertEqual(found["parameters"].keys(), expected["parameters"].keys())
+        self.assertGreater(found["effective_sample_size"], 100.0)
         for name, one in expected["parameters"].items():
             self.assertAlmostEqual(found["parameters"][name]["mean"], one["mean"], delta=1e-3 * one["sd"])
 
