@@ -34,10 +34,4 @@ set(TWINMAP_SPEC <framework/experiment/experiment_spec.hpp>) # what most of the 
 
 twinmap_precompile(common)
 twinmap_precompile(framework HEADERS ${TWINMAP_SPEC})
-if(TWINMAP_SANITIZE)
-  # Three fifths of the time of -O1. Tests keep that, as what they spend their time in does: at -O0 they take three times
-  # as long, which costs more than it saves.
-  twinmap_precompile(light HEADERS ${TWINMAP_SPEC} OPTIONS -O0)
-else()
-  twinmap_precompile(light HEADERS ${TWINMAP_SPEC} OPTIONS ${TWINMAP_LIGHT})
-endif()
+twinmap_precompile(light HEADERS ${TWINMAP_SPEC} OPTIONS ${TWINMAP_LIGHT})

@@ -31,6 +31,9 @@ constexpr int kOwnStarts = 8;
 /// Of a recording alone, where there are many parameters and each simulation is dear: their means and
 /// standard deviations are then known to a tenth of one, which is enough to show what each recording adds.
 constexpr int kDrawsAlone = 128;
+/// Of all recordings of such a machine, unless given: half of what others take. With an effective sample size
+/// of half of these, means are known to a tenth of a standard deviation.
+constexpr int kDrawsOfMany = 256;
 /// With more unknown parameters than these, those of single recordings are integrated out: importance
 /// sampling is good for some ten dimensions.
 constexpr Index kMaxDrawn = 8;
@@ -215,8 +218,11 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
     members_.push_back({trial.name, std::move(reader), std::move(simulator), inputs});
     requireSameParameters(getParameters(), members_.back().reader->getExperiment().model.parameters);
   }
-  options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
   const bool has_many = static_cast<Index>(getParameters().size()) > kManyUnknown;
+  if (draws == 0) {
+    draws = has_many ? kDrawsOfMany : SimulatorPosteriorOptions{}.draws;
+  }
+  options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
   options_.draws = has_many ? std::min(draws, kDrawsAlone) : draws;
   joint_options_.search.scouts = has_many ? 0 : kOwnStarts;
   joint_options_.search.starts = 2 * kOwnStarts;

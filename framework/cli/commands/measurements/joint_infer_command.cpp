@@ -53,8 +53,10 @@ void requireJointArguments(const InferArguments& arguments) {
 }
 
 /// The only recording of a trial: as its own experiment file would infer it.
-void inferTrial(const InferArguments& arguments, const MeasurementReader& reader, const Recording& recording,
-                int draws) {
+void inferTrial(const InferArguments& arguments, const MeasurementReader& reader,
+                const Recording& recording) {
+  const int draws =
+      arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
   DirectInference session(reader, draws);
   printInferred(arguments, session.infer(*recording.table, recording.start, readKnown(arguments, reader)),
                 reader, session);
@@ -72,14 +74,13 @@ void inferJointly(const InferArguments& arguments) {
         "several recordings are inferred by simulation alone: there is nothing to refine; leave --refine and "
         "--no-refine out");
   }
-  const int draws =
-      arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
-  const JointInferrer inferrer(loadExperimentTree(findExperimentFile(arguments.run)), arguments.known, draws);
+  const JointInferrer inferrer(loadExperimentTree(findExperimentFile(arguments.run)), arguments.known,
+                               arguments.posterior_draws);
   const RecordingList recordings(inferrer, readTables(arguments, inferrer),
                                  {arguments.starts, arguments.windows});
   if (recordings.get().size() == 1 && !arguments.trials.empty()) {
     const Recording& only = recordings.get().front();
-    inferTrial(arguments, inferrer.getReader(only.trial), only, draws);
+    inferTrial(arguments, inferrer.getReader(only.trial), only);
     return;
   }
   if (recordings.get().size() < 2) {

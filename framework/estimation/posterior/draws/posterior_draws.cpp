@@ -144,7 +144,7 @@ AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, I
 /// Of many parameters about a bent response, where its bend is more than weights make good.
 AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, bool has_many,
                            const PosteriorDrawOptions& options) {
-  constexpr int kMostRounds = 4;         // where no mixture follows
+  constexpr int kMostRounds = 8;         // where no mixture follows
   constexpr double kNearlyLinear = 0.7;  // variance of log weights: half of the draws count
   const Basin& basin = landscape.basins.front();
   if (!has_many) {
