@@ -6,8 +6,9 @@
 FILE has `trials:`. A line a machine: statuses, intervals that hold the truth, the largest error in standard deviations, the
 squared errors in units of the covariance over their number (above 1 where few draws tell the covariance) with the probability
 of more (Hotelling, with as many draws as the effective sample size), time, and the effective sample sizes together and of the
-recordings alone; then the share of all intervals that hold. The intervals of a machine hold or fail together where parameters share what is not determined (of an arm
-whose angles alone are measured, one factor of all forces and masses); the squared errors do not.
+recordings alone; then the share of all intervals that hold. The intervals of a machine hold or fail together where parameters
+share what is not determined (of an arm whose angles alone are measured, one factor of all forces and masses); the squared
+errors do not.
 """
 import argparse
 import json
@@ -63,9 +64,9 @@ def describe(seed, estimate, truth, seconds):
     alone = ", ".join(f"{trial['posterior']['effective_sample_size']:.0f}" for trial in estimate["trials"])
     apart = np.array([found[name]["mean"] - value for name, value in truth.items()])
     squared = apart @ np.linalg.solve(np.array(estimate["covariance"]), apart)
-    line = (
-        f"{seed}: {', '.join(estimate['statuses'])}; {held} of {len(truth)} hold; at most {np.abs(errors).max():.2f} sd"
-    )
+    draws, n = estimate["effective_sample_size"], len(truth)
+    chance = f.sf(squared * (draws - n) / (n * (draws - 1)), n, draws - n) if draws > n else float("nan")
+    line = f"{seed}: {', '.join(estimate['statuses'])}; {held} of {n} hold; at most {np.abs(errors).max():.2f} sd"
     line += f"; squared errors {squared / n:.2f} (p {chance:.3f})"
     print(f"{line}; {seconds:.0f} s; worth {draws:.0f} draws, alone {alone}", flush=True)
     return held
