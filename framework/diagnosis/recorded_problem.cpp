@@ -336,7 +336,7 @@ RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
     from.col(i) = coordinates.fromParameters(starts.col(i));
   }
   SearchTeam team(surface, from);
-  team.run(BasinSearchOptions{}.max_iterations, chooseConvergedGain(surface.getDimensions()));
+  team.run(BasinSearchOptions{}.max_iterations);
   RecordingFit best;
   for (const LocalSurface& end : team.listEnds()) {
     if (best.point.size() == 0 || end.chi_square < best.chi_square) {

@@ -37,14 +37,13 @@ bool isExplained(const std::vector<Basin>& basins) {
 
 /// The ends of searches of more and more of the response, each from where the last one ended: a chaotic
 /// response has many minima, but its beginning has few, and they lie where the next ones do.
-std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
-                                        const BasinSearchOptions& options) {
+std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
   constexpr int kIterations = 8;  // where a window ends is but the next one's start
   const std::size_t windows = surface.countWindows();
   for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
     surface.setWindow(i);
     SearchTeam team(surface, starts);
-    team.run(kIterations, options.converged_gain);
+    team.run(kIterations);
     const std::vector<LocalSurface> ends = team.listEnds();
     starts.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
     for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -56,7 +55,7 @@ std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
     return {};
   }
   SearchTeam team(surface, starts);
-  team.run(options.max_iterations, options.converged_gain);
+  team.run(max_iterations);
   return team.listEnds();
 }
 
@@ -103,7 +102,7 @@ MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, con
 /// Places along the flattest direction of basins, both ways as far as the bounds allow, on the floor of its
 /// valley: corrected at right angles to it. Impacts and sticking cut a valley into several hills, each so
 /// narrow that searches from afar end in any of them.
-MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins, double converged_gain) {
+MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins) {
   constexpr double kReaches[] = {-8.0, -4.0, 4.0, 8.0};  // standard deviations
   constexpr std::size_t kMost = 2;
   constexpr int kIterations = 4;
@@ -126,7 +125,7 @@ MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins, 
     return places;
   }
   SearchTeam team(surface, places, held);
-  team.run(kIterations, converged_gain);
+  team.run(kIterations);
   const std::vector<LocalSurface> ends = team.listEnds();
   places.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
   for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -173,13 +172,13 @@ class BasinHunt {
   void search(const MatrixXd& starts) {
     SearchTeam team(surface_, starts);
     team.setKnown(found_.basins);
-    team.run(options_.max_iterations, options_.converged_gain);
+    team.run(options_.max_iterations);
     add(team.listEnds());
     found_.starts += static_cast<int>(starts.cols());
   }
 
   void searchWindows(const MatrixXd& starts) {
-    add(searchGrowing(surface_, starts, options_));
+    add(searchGrowing(surface_, starts, options_.max_iterations));
     found_.starts += static_cast<int>(starts.cols());
   }
 
@@ -198,8 +197,7 @@ class BasinHunt {
     constexpr int kMost = 3;
     for (int i = 0; i < kMost && isExplained() && found_.starts >= options_.starts; ++i) {
       const double least = found_.basins.front().local.misfit;
-      if (const MatrixXd places = followFloors(surface_, found_.basins, options_.converged_gain);
-          places.cols() > 0) {
+      if (const MatrixXd places = followFloors(surface_, found_.basins); places.cols() > 0) {
         search(places);
       }
       if (!(found_.basins.front().local.misfit < least)) {
@@ -231,11 +229,6 @@ MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
   const MatrixXd unit =
       sampleUnitCube(sobol, static_cast<int>(dimensions), seed, RandomPurpose::kBasinStarts);
   return 2.0 * unit.array() - 1.0;
-}
-
-double chooseConvergedGain(Index unknown) {
-  constexpr double kGainOfMany = 0.1;
-  return unknown > kManyUnknown ? kGainOfMany : kConvergedGain;
 }
 
 bool liesIn(const Basin& basin, const VectorXd& at) {

@@ -21,11 +21,6 @@ struct Basin {
 /// Points all over the box (u x n) to search from: of a Sobol sequence.
 Eigen::MatrixXd makeStarts(Eigen::Index dimensions, std::uint64_t seed, int count);
 
-/// A search has converged where a step would gain less of chi-square than this: a tenth of a standard
-/// deviation, or more of many parameters, whose chi-square varies by some ten.
-constexpr double kConvergedGain = 0.01;
-double chooseConvergedGain(Eigen::Index unknown);
-
 constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
 
 /// Whether a point is within kBasinReach standard deviations of a basin's minimum.
@@ -59,7 +54,6 @@ struct BasinSearchOptions {
   int confirmations = 3;
   int max_batches = 4;
   int max_iterations = 25;
-  double converged_gain = kConvergedGain;
   /// Whether starts are spread as the prior is, not all over the bounds: of many parameters hardly any start
   /// is near enough else.
   bool from_prior = false;

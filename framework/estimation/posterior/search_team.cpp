@@ -20,6 +20,8 @@ constexpr double kDampings[] = {0.01, 1.0, 30.0};
 constexpr double kFirstDamping = 1e-2, kMinDamping = 1e-9, kMaxDamping = 1e8, kRaise = 100.0;
 constexpr double kHeldLinear = 0.75;      // of the gain that the linear model says
 constexpr double kLongestStep = 0.5;      // half of a coordinate's bounds
+constexpr double kConvergedGain = 0.01;   // of chi-square: a tenth of a standard deviation
+constexpr double kGainOfMany = 0.1;       // of many parameters, whose chi-square varies by some ten
 constexpr double kFirstDiagonal = 1e-12;  // of the largest: what the response does not depend on stays
 constexpr double kFarAbove = 50.0;        // of the best chi-square: e^-25 of its density
 
@@ -116,10 +118,10 @@ SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const Mat
   }
 }
 
-void SearchTeam::run(int max_iterations, double converged_gain) {
+void SearchTeam::run(int max_iterations) {
   // By then whatever is near a minimum has come down to it; what must be better than a known basin, sooner.
   const int first_judged = known_.empty() ? 5 : 3;
-  for (int i = 1; i <= max_iterations && improve(converged_gain); ++i) {
+  for (int i = 1; i <= max_iterations && improve(); ++i) {
     if (i == first_judged || i == 2 * first_judged) {
       giveUpHopeless();
     }
@@ -150,7 +152,7 @@ std::vector<SearchTeam::Search*> SearchTeam::listActive() {
 }
 
 /// One iteration of all that have not converged; false if there are none.
-bool SearchTeam::improve(double converged_gain) {
+bool SearchTeam::improve() {
   const std::vector<Search*> active = listActive();
   if (active.empty()) {
     return false;
@@ -191,18 +193,19 @@ bool SearchTeam::improve(double converged_gain) {
     }
     column += tried;
   }
-  move(moved, trials(Eigen::all, columns), converged_gain);
+  move(moved, trials(Eigen::all, columns));
   return true;
 }
 
-void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to, double converged_gain) {
+void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
   if (moved.empty()) {
     return;
   }
+  const double converged = surface_.getDimensions() > kManyUnknown ? kGainOfMany : kConvergedGain;
   std::vector<LocalSurface> reached = surface_.linearize(to);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     Search& search = *moved[i];
-    search.active = reached[i].simulated && predictGain(reached[i], search.held) > converged_gain;
+    search.active = reached[i].simulated && predictGain(reached[i], search.held) > converged;
     if (reached[i].simulated) {
       search.local = std::move(reached[i]);
       settle(search);

@@ -21,8 +21,7 @@ class SearchTeam {
 
   /// Basins of the same surface that earlier searches have found. Before run().
   void setKnown(const std::vector<Basin>& known) { known_ = known; }
-  /// converged_gain: BasinSearchOptions::converged_gain.
-  void run(int max_iterations, double converged_gain = kConvergedGain);
+  void run(int max_iterations);
 
   /// Where search i is.
   const LocalSurface& getLocal(Eigen::Index i) const { return searches_[static_cast<std::size_t>(i)].local; }
@@ -40,9 +39,9 @@ class SearchTeam {
     std::vector<double> factors{};  ///< of the damping, that an iteration tries
   };
 
-  bool improve(double converged_gain);
+  bool improve();
   std::vector<Search*> listActive();
-  void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to, double converged_gain);
+  void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to);
   void settle(Search& search);
   const LocalSurface* findBest() const;
   void giveUpHopeless();

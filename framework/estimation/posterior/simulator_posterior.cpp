@@ -108,9 +108,8 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   MisfitSurface& surface = whole.upd();
   const LogCoordinates& coordinates = whole.getCoordinates();
   const MatrixXd starts = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
-  BasinSearchOptions search = limitSearch(options.search, problem.drawn);
-  search.converged_gain = chooseConvergedGain(surface.getDimensions());
-  const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed, search);
+  const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed,
+                                       limitSearch(options.search, problem.drawn));
   SimulatorPosterior posterior;
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();
@@ -166,7 +165,7 @@ double findLeastChiSquare(const PosteriorProblem& problem) {
   });
   order.resize(kSearches);
   SearchTeam team(surface, points(Eigen::all, order));
-  team.run(BasinSearchOptions{}.max_iterations, chooseConvergedGain(surface.getDimensions()));
+  team.run(BasinSearchOptions{}.max_iterations);
   double least = std::numeric_limits<double>::infinity();
   for (const LocalSurface& end : team.listEnds()) {
     least = std::min(least, end.chi_square);

@@ -149,7 +149,7 @@ Valleys followValleys(MisfitSurface& surface, const std::vector<Basin>& basins) 
     }
   }
   SearchTeam team(surface, starts, held);
-  team.run(kIterations, chooseConvergedGain(surface.getDimensions()));
+  team.run(kIterations);
   const double limit = basins.front().local.misfit + kBears;
   column = 0;
   for (const Way& way : ways) {
