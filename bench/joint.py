@@ -60,9 +60,9 @@ def record(twinmap, file, trials, truth, seed, folder):
 def describe(seed, estimate, truth, seconds):
     found = estimate["parameters"]
     held = sum(found[name]["lower"] <= value <= found[name]["upper"] for name, value in truth.items())
-    errors = np.array([(found[name]["mean"] - value) / found[name]["sd"] for name, value in truth.items()])
     alone = ", ".join(f"{trial['posterior']['effective_sample_size']:.0f}" for trial in estimate["trials"])
     apart = np.array([found[name]["mean"] - value for name, value in truth.items()])
+    errors = apart / np.array([found[name]["sd"] for name in truth])
     squared = apart @ np.linalg.solve(np.array(estimate["covariance"]), apart)
     draws, n = estimate["effective_sample_size"], len(truth)
     chance = f.sf(squared * (draws - n) / (n * (draws - 1)), n, draws - n) if draws > n else float("nan")

@@ -205,7 +205,8 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
   return statuses.empty() ? std::vector<std::string>{"ok"} : statuses;
 }
 
-JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string>& known, int draws) {
+JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string>& known,
+                             std::optional<int> draws) {
   for (const Trial& trial : expandTrials(root)) {
     auto reader =
         std::make_unique<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
@@ -219,11 +220,10 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
     requireSameParameters(getParameters(), members_.back().reader->getExperiment().model.parameters);
   }
   const bool has_many = static_cast<Index>(getParameters().size()) > kManyUnknown;
-  if (draws == 0) {
-    draws = has_many ? kDrawsOfMany : SimulatorPosteriorOptions{}.draws;
-  }
-  options_ = joint_options_ = makePosteriorOptions(members_.front().reader->getExperiment(), draws);
-  options_.draws = has_many ? std::min(draws, kDrawsAlone) : draws;
+  options_ = joint_options_ =
+      makePosteriorOptions(members_.front().reader->getExperiment(),
+                           draws.value_or(has_many ? kDrawsOfMany : SimulatorPosteriorOptions{}.draws));
+  options_.draws = has_many ? std::min(joint_options_.draws, kDrawsAlone) : joint_options_.draws;
   joint_options_.search.scouts = has_many ? 0 : kOwnStarts;
   joint_options_.search.starts = 2 * kOwnStarts;
   joint_options_.search.max_batches = 1;

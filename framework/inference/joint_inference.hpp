@@ -67,9 +67,9 @@ ScatterEstimate combineScattered(const Eigen::VectorXd& values, const Eigen::Vec
 /// parameters) of its own, by simulation alone. For one thread, which OpenMP's others help.
 class JointInferrer {
  public:
-  /// root: the experiment's tree, with trials or without; draws: of a round, 0: as many as suit the number of
-  /// parameters.
-  JointInferrer(const YamlNode& root, const std::vector<std::string>& known, int draws = 0);
+  /// root: the experiment's tree, with trials or without; draws: of a round; none: as many as suit the
+  /// number of parameters.
+  JointInferrer(const YamlNode& root, const std::vector<std::string>& known, std::optional<int> draws = {});
 
   /// The machine's, the same in all trials.
   const std::vector<ParameterSpec>& getParameters() const;

@@ -32,7 +32,7 @@ Eigen::MatrixXd takeDraws(const SimulatorPosterior& joint, std::size_t parameter
 
 /// JSON and text, as `twinmap infer --joint` prints them, and the joint draws (n, p) with their weights.
 py::tuple inferTogether(const std::string& path, const std::vector<Recorded>& recordings,
-                        const RecordedWindows& windows, const Known& known, int draws) {
+                        const RecordedWindows& windows, const Known& known, std::optional<int> draws) {
   std::vector<std::string> texts;
   for (const auto& [name, value] : known) {
     texts.push_back(fmt::format("{}={:.17g}", name, value));
@@ -81,7 +81,7 @@ void bindJoint(py::module_& module) {
   module.def(
       "infer_together",
       [](const std::string& path, const std::vector<Recorded>& recordings, const std::vector<double>& starts,
-         std::optional<double> windows, const Known& known, int draws) {
+         std::optional<double> windows, const Known& known, std::optional<int> draws) {
         return inferTogether(path, recordings, {starts, windows}, known, draws);
       },
       py::arg("path"), py::arg("recordings"), py::arg("starts"), py::arg("windows"), py::arg("known"),

@@ -88,9 +88,8 @@ InferredEstimate inferSegments(const PythonMap& map, const std::string& name,
                                const std::optional<NamedVectors>& columns, double length,
                                const InferRequest& request) {
   const ExperimentSpec& experiment = map.getReader().getExperiment();
-  const int draws = request.options.posterior_draws;
   const SegmentInference inference(experiment, length, collectKnown(experiment.model.inputs, request.known),
-                                   draws > 0 ? draws : SegmentInference::kDefaultDraws);
+                                   request.options.posterior_draws);
   const Table table = readOrMakeTable(name, columns, inference.listColumns());
   const py::gil_scoped_release release;
   InferredMeasurement measurement = inference.infer(table, request.start);

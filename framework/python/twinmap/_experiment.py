@@ -211,7 +211,7 @@ class Experiment:
         chaotic.
 
         recording: a file (CSV, MATLAB, HDF5), or a DataFrame or mapping from columns to samples. known, start, draws,
-        errors: as infer() has them.
+        errors: as infer() has them. The posterior's draws are of the parameters alone.
         """
         if not length > 0.0:
             raise ValueError(f"length: must be above 0 (s), not {length!r}")

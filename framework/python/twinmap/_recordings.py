@@ -98,14 +98,15 @@ def infer_together(
     starts: Sequence[float] = (),
     windows: Optional[float] = None,
     known: Optional[Mapping[str, float]] = None,
-    draws: int = 512,
+    draws: Optional[int] = None,
 ) -> JointEstimate:
     """One estimate from several recordings of one machine, by simulation alone (docs/how-to/combine-recordings.md).
 
     path: the experiment's file, with trials or without. recordings: files, DataFrames or mappings from columns to
     samples, as Map.infer() takes them; of a file with trials a mapping from their names to one or several. starts: times
     in each recording (s) that are the model's 0. windows: one every so many seconds over each recording. known: values of
-    the known inputs. Raises MeasurementError for a recording that cannot be used, ExperimentError for an unknown trial.
+    the known inputs. draws: a round; None: 512, and 256 of more than sixteen parameters. Raises MeasurementError for a
+    recording that cannot be used, ExperimentError for an unknown trial.
     """
     found = _twinmap.infer_together(
         os.fspath(path), list_trials(recordings), list(starts), windows, list_known(known), draws

@@ -172,7 +172,7 @@ def infer_together(
     starts: Sequence[float],
     windows: Optional[float],
     known: Sequence[Tuple[str, float]],
-    draws: int,
+    draws: Optional[int],
 ) -> Tuple[str, str, np.ndarray, np.ndarray]: ...
 def read_trials(map: Map, recordings: Sequence[Tuple[str, str, _Columns]]) -> np.ndarray: ...
 def diagnose(

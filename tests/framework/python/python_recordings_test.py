@@ -65,6 +65,13 @@ class Recordings(FolderTestCase):
         self.assertIn("20 segments of 0.1 s", repr(found))
         with self.assertRaisesRegex(ValueError, "length: must be above 0"):
             experiment.infer_segments(recording, -1.0)
+        with self.assertRaisesRegex(twinmap.ExperimentError, "at least 200 draws, not 0"):
+            experiment.infer_segments(recording, 0.1, draws=0)
+
+    def test_draws_that_are_too_few_are_refused(self):
+        recordings = {"free": self.measure("free"), "step": self.measure("step")}
+        with self.assertRaisesRegex(twinmap.ExperimentError, "at least 200 draws, not 0"):
+            twinmap.infer_together(self.path, recordings, draws=0)
 
     def test_trials_have_one_estimate_which_is_the_commands(self):
         free, step = self.measure("free"), self.measure("step")

@@ -52,12 +52,14 @@ void requireJointArguments(const InferArguments& arguments) {
   }
 }
 
+std::optional<int> findDraws(const InferArguments& arguments) {
+  return arguments.posterior_draws > 0 ? std::optional<int>(arguments.posterior_draws) : std::nullopt;
+}
+
 /// The only recording of a trial: as its own experiment file would infer it.
 void inferTrial(const InferArguments& arguments, const MeasurementReader& reader,
                 const Recording& recording) {
-  const int draws =
-      arguments.posterior_draws > 0 ? arguments.posterior_draws : SimulatorPosteriorOptions{}.draws;
-  DirectInference session(reader, draws);
+  DirectInference session(reader, findDraws(arguments).value_or(SimulatorPosteriorOptions{}.draws));
   printInferred(arguments, session.infer(*recording.table, recording.start, readKnown(arguments, reader)),
                 reader, session);
 }
@@ -75,7 +77,7 @@ void inferJointly(const InferArguments& arguments) {
         "--no-refine out");
   }
   const JointInferrer inferrer(loadExperimentTree(findExperimentFile(arguments.run)), arguments.known,
-                               arguments.posterior_draws);
+                               findDraws(arguments));
   const RecordingList recordings(inferrer, readTables(arguments, inferrer),
                                  {arguments.starts, arguments.windows});
   if (recordings.get().size() == 1 && !arguments.trials.empty()) {
