@@ -23,6 +23,17 @@ bool isPrescribed(const ModelSpec& model, const std::string& coordinate) {
                      [&](const MotionSpec& motion) { return motion.coordinate.text == coordinate; });
 }
 
+template <class Element>
+Expression makeReach(const Element&) {
+  return {"", {}};
+}
+
+/// A bristle slides where it carries the friction of rest.
+Expression makeReach(const Friction<Expression>& friction) {
+  const Expression& level = getStaticLevel(friction);
+  return {"(" + level.text + ") / (" + friction.bristle->stiffness.text + ")", level.where};
+}
+
 }  // namespace
 
 std::vector<StartState> listStartStates(const ModelSpec& model) {
@@ -32,20 +43,22 @@ std::vector<StartState> listStartStates(const ModelSpec& model) {
     for (const std::string& name : names.getCoordinateNames()) {
       if (!isPrescribed(model, name)) {
         const bool of_coordinate = kind == Kind::kCoordinate;
-        states.push_back(
-            {name, kind, findNamed(of_coordinate ? model.initial.coordinates : model.initial.speeds, name)});
+        states.push_back({name,
+                          kind,
+                          findNamed(of_coordinate ? model.initial.coordinates : model.initial.speeds, name),
+                          {"", {}}});
       }
     }
   }
   const std::vector<std::string>& state_names = names.getStateNames();
   std::size_t next = 0;
   for (const StateSpec& state : model.system.states) {
-    states.push_back({state_names[next++], Kind::kState, state.initial});
+    states.push_back({state_names[next++], Kind::kState, state.initial, {"", {}}});
   }
   model.system.elements.forEachList([&](const auto& list) {
     for (const auto& element : list) {
       forEachOwnState(element, [&](const auto& part, const Name&) {
-        states.push_back({state_names[next++], Kind::kState, part.initial});
+        states.push_back({state_names[next++], Kind::kState, part.initial, makeReach(element)});
       });
     }
   });

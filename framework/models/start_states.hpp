@@ -14,6 +14,7 @@ struct StartState {
   std::string name;  ///< of the coordinate, or of the state
   Kind kind = Kind::kCoordinate;
   Expression initial{"", {}};  ///< as the file gives it; "": 0
+  Expression reach{"", {}};    ///< how large it becomes, where its law says that; "": not known
 };
 
 /// The states of a model that are free at a start: coordinates that no signal prescribes, their speeds, the

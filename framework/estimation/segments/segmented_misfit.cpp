@@ -67,7 +67,7 @@ std::vector<SegmentedMisfit::SegmentFit> SegmentedMisfit::begin(const MatrixXd& 
       fit.state = recording_.states.col(k);
       if (anchor != nullptr) {
         fit.near = &anchor->best[static_cast<std::size_t>(k)];
-        fit.state = fit.near->state + fit.near->slopes * (points.col(i) - anchor->at);
+        fit.state = limit(fit.near->state + fit.near->slopes * (points.col(i) - anchor->at), k);
       }
       fits.push_back(std::move(fit));
     }
@@ -122,6 +122,13 @@ VectorXd SegmentedMisfit::calcAhead(const SegmentFit& fit) const {
   return recording_.states.col(fit.segment) - fit.state;
 }
 
+/// Within a standard deviation of its prior, which is wide: where a linear model leads farther it holds no
+/// longer, and a simulation from there can take for ever.
+VectorXd SegmentedMisfit::limit(const VectorXd& state, Index segment) const {
+  const VectorXd given = recording_.states.col(segment), reach = precision_.cwiseInverse();
+  return state.cwiseMax(given - reach).cwiseMin(given + reach);
+}
+
 /// Takes what was simulated as the best so far, or goes back half the way. Samples that are missing count 0.
 void SegmentedMisfit::update(const VectorXd& response, const MatrixXd& derivatives, SegmentFit& fit) const {
   if (!fit.status.ok) {
@@ -146,7 +153,7 @@ void SegmentedMisfit::update(const VectorXd& response, const MatrixXd& derivativ
     slopes = is_there.replicate(1, slopes.cols()).select(slopes, 0.0);
     takeStep(residual, recording_.whitener.apply(slopes)(recording_.order, Eigen::all), fit);
   }
-  fit.state = fit.accepted + fit.local.step;
+  fit.state = limit(fit.accepted + fit.local.step, fit.segment);
   fit.active = fit.local.gain > kLastGain;
 }
 

@@ -59,6 +59,7 @@ class SegmentedMisfit final : public MeasuredMisfit {
   void takeStep(const Eigen::VectorXd& residual, const Eigen::MatrixXd& derivatives, SegmentFit& fit) const;
   void retreat(SegmentFit& fit) const;
   Eigen::VectorXd calcAhead(const SegmentFit& fit) const;
+  Eigen::VectorXd limit(const Eigen::VectorXd& state, Eigen::Index segment) const;
   LocalMisfit combine(const Eigen::VectorXd& at, const SegmentFit* fits) const;
   void remember(const Eigen::VectorXd& at, SegmentFit* fits);
   /// action(i, fits of point i), few points at a time: what their segments say takes memory.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "framework/estimation/segments/segmented_recording.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/model_numbers.hpp"
 
@@ -19,14 +20,14 @@ namespace {
 /// Samples of a straight line: enough against noise, few enough for what moves fast.
 constexpr Index kLine = 8;
 
-/// Value and slope of a quantity where a segment begins; NaN where too few samples are there.
+/// Value and slope of a quantity where samples begin; NaN where too few are there.
 struct Line {
   double value = std::nan(""), slope = std::nan("");
 };
 
 Line fitLine(const VectorXd& samples, double interval) {
   double count = 0.0, time = 0.0, square = 0.0, sum = 0.0, product = 0.0;
-  for (Index i = 0; i < samples.size() && count < kLine; ++i) {
+  for (Index i = 0; i < samples.size(); ++i) {
     if (std::isfinite(samples[i])) {
       const double t = static_cast<double>(i) * interval;
       count += 1.0;
@@ -63,6 +64,8 @@ class Guesser {
     OneState one{VectorXd::Constant(static_cast<Index>(samples_.size()), given), std::abs(given)};
     if (const std::optional<double> half_width = findHalfWidth(state.initial.text)) {
       one.scale = *half_width;
+    } else if (!state.reach.text.empty()) {
+      one.scale = std::abs(calc(state.reach)) / kStateScales;  // its prior ends where it does
     }
     if (state.kind != Kind::kState) {
       takeMeasured(state, one);
@@ -98,18 +101,23 @@ class Guesser {
     const double gain = output.gain.text.empty() ? 1.0 : calc(output.gain);
     const double offset = output.offset.text.empty() ? 0.0 : calc(output.offset);
     VectorXd values = one.values;
+    std::vector<double> all;  // along the segments too: how far the state goes
     for (Index k = 0; k < values.size(); ++k) {
-      const Line line = fitLine(samples_[static_cast<std::size_t>(k)].col(column), interval_);
-      const double value = (takes_slope ? line.slope : line.value - offset) / gain;
-      if (std::isfinite(value)) {
-        values[k] = value;
-        one.measured = true;
+      const auto samples = samples_[static_cast<std::size_t>(k)].col(column);
+      for (Index first = 0; first < samples.size(); first += kLine) {
+        const Line line = fitLine(samples.segment(first, std::min(kLine, samples.size() - first)), interval_);
+        const double value = (takes_slope ? line.slope : line.value - offset) / gain;
+        if (std::isfinite(value)) {
+          all.push_back(value);
+          values[k] = first == 0 ? value : values[k];
+          one.measured = true;
+        }
       }
     }
     if (one.measured) {
       one.values = values;
-      const double mean = values.mean();
-      const double spread = std::sqrt((values.array() - mean).square().mean());
+      const auto known = Eigen::Map<const VectorXd>(all.data(), static_cast<Index>(all.size())).array();
+      const double mean = known.mean(), spread = std::sqrt((known - mean).square().mean());
       one.scale = std::max({one.scale, spread, 1e-3 * std::abs(mean)});
     }
   }

@@ -167,6 +167,64 @@ TEST(Segments, SayWhatTheyCannotDo) {
   EXPECT_EQ(getError(kOscillator, 0.5), "");
 }
 
+const std::string kRubbing = R"(
+name: rubbing_cart
+parameters:
+  m: {bounds: [1.5, 2.5], unit: kg}
+  s0: {bounds: [5e3, 2e4], unit: N/m}
+  Fc: {bounds: [1, 3], unit: N}
+system:
+  bodies: {cart: {mass: m, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: 50}]
+  friction:
+    - {coordinate: x, model: lugre, coulomb: Fc, viscous: 0.1, bristle: {stiffness: s0, damping: 20}}
+  applied_forces: [{body: cart, force: [F, 0, 0]}]
+excitation: {F: {unit: N, sines: [{amplitude: 8, frequency: 1.5}]}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: 0.8}
+features: [{samples: {outputs: [x], start: 0, interval: 0.01, count: 80}}]
+noise: {stddev: {x: 2e-5}}
+)";
+
+/// x of the cart, by Runge and Kutta's method in steps that its bristle needs.
+VectorXd rub(double m, double s0, double coulomb, int count) {
+  constexpr int kSubsteps = 400;
+  constexpr double h = 0.01 / kSubsteps;
+  const auto rate = [&](double t, const Eigen::Vector3d& y) {
+    const double change = y[1] - s0 * std::abs(y[1]) * y[2] / coulomb;
+    const double friction = s0 * y[2] + 20.0 * change + 0.1 * y[1];
+    return Eigen::Vector3d(y[1], (8.0 * std::sin(3.0 * M_PI * t) - 50.0 * y[0] - friction) / m, change);
+  };
+  VectorXd x(count);
+  Eigen::Vector3d y = Eigen::Vector3d::Zero();
+  for (int i = 0; i < count * kSubsteps; ++i) {
+    if (i % kSubsteps == 0) {
+      x[i / kSubsteps] = y[0];
+    }
+    const double t = i * h;
+    const Eigen::Vector3d a = rate(t, y), b = rate(t + h / 2, y + h / 2 * a),
+                          c = rate(t + h / 2, y + h / 2 * b), e = rate(t + h, y + h * c);
+    y += h / 6 * (a + 2 * b + 2 * c + e);
+  }
+  return x;
+}
+
+// A bristle goes no farther than where it slides; one segment alone tells how far the cart goes.
+TEST(Segments, BeginWithBristlesWithinTheirReach) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0.0, 2e-5);
+  VectorXd x = rub(2.1, 1.2e4, 1.7, 80);
+  x += VectorXd::NullaryExpr(80, [&] { return noise(random); });
+  const Table table{"record.csv", {{"t", {}, VectorXd::LinSpaced(80, 0.0, 0.79)}, {"x", {}, x}}, {}};
+  const Estimate estimate = selectEstimate(infer(table, kRubbing, 0.8));
+  EXPECT_EQ(estimate.statuses, std::vector<std::string>{"ok"});
+  const Eigen::Vector3d truth(2.1, 1.2e4, 1.7);
+  for (Index j = 0; j < 3; ++j) {
+    EXPECT_LT(std::abs(estimate.mean[j] - truth[j]), 4.0 * estimate.stddev[j]) << j;
+  }
+  EXPECT_LT(estimate.stddev[0], 1e-3);
+}
+
 TEST(Segments, NeedARecordingOfOneSegmentAtLeast) {
   EXPECT_THROW(infer(record(6), kOscillator, 20.0), ExperimentError);
 }
