@@ -87,7 +87,7 @@ void addValidate(CLI::App& app) {
       ->add_option("--max-rms", arguments->max_rms,
                    "Pass up to this rms residual, in noise standard deviations (default: what noise and the "
                    "parameters' sd leave in 99 % of predictions)")
-      ->check(CLI::PositiveNumber)
+      ->check(makePositiveCheck())
       ->type_name("R");
   command->add_flag("--json", arguments->json, "Print a line of JSON");
   command->callback([arguments] { validate(*arguments); });

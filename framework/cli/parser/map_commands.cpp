@@ -23,14 +23,14 @@ void addJointInference(CLI::App& command, InferArguments& arguments) {
                   "Infer the windows of each file that begin every S seconds together, and test whether they "
                   "agree")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(makePositiveCheck());
   command
       .add_option(
           "--segments", arguments.segments,
           "Cut each file into segments of S seconds, each from an initial state of its own: for what is "
           "unstable or chaotic")
       ->type_name("S")
-      ->check(CLI::PositiveNumber);
+      ->check(makePositiveCheck());
 }
 
 void addPosterior(CLI::App& command, InferArguments& arguments) {
@@ -201,7 +201,7 @@ void addLook(CLI::App& app) {
           ->type_name("COLUMN");
   command->add_option("--rate", arguments->sample_rate, "Rate of the rows instead of a column of times; Hz")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber)
+      ->check(makePositiveCheck())
       ->excludes(time);
   command->add_flag("--json", arguments->json, "Print JSON");
   command->callback([arguments] { look(*arguments); });

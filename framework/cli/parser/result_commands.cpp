@@ -44,6 +44,7 @@ void addReport(CLI::App& app) {
 }
 
 void addVerify(CLI::App& app, const Invocation& invocation) {
+  constexpr int kMostSamples = 1000000;
   const auto arguments = std::make_shared<VerifyArguments>();
   arguments->seed = std::random_device()();
   arguments->threads = invocation.threads;
@@ -54,7 +55,7 @@ void addVerify(CLI::App& app, const Invocation& invocation) {
   command->add_option("DIR", arguments->folder, "Folder of a run or a sweep")->required()->option_text(" ");
   command->add_option("--samples", arguments->samples, "Samples of each set to simulate again (default: 5)")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, kMostSamples));
   command->add_option("--seed", arguments->seed, "Chooses the samples and cases (default: another each time)")
       ->type_name("S");
   command->add_flag("--all", arguments->all,

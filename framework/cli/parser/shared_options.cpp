@@ -1,6 +1,17 @@
 #include "framework/cli/parser/shared_options.hpp"
 
+#include <cmath>
+
 namespace twinmap::cli {
+
+CLI::Validator makePositiveCheck() {
+  const auto check = [](const std::string& text) {
+    double value = 0.0;
+    const bool is_positive = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
+    return is_positive ? std::string() : text + " is not a number above 0";
+  };
+  return CLI::Validator(check, "");
+}
 
 void addExperiment(CLI::App& command, ExperimentArguments& arguments) {
   command.add_option("FILE", arguments.file, "Experiment file (YAML)")->required()->option_text(" ");
@@ -37,7 +48,7 @@ void addWhereAndHow(CLI::App& command, RunArguments& arguments, const Invocation
       .add_option("--memory", arguments.memory,
                   "Memory that the cases of a sweep may take together (default: half of the machine's)")
       ->type_name("GIB")
-      ->check(CLI::PositiveNumber);
+      ->check(makePositiveCheck());
 }
 
 void addJobs(CLI::App& command, SubmitArguments& arguments) {

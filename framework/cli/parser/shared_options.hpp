@@ -10,6 +10,9 @@ namespace twinmap::cli {
 
 // Options that several commands take.
 
+/// Of an option's value: a finite number above 0.
+CLI::Validator makePositiveCheck();
+
 /// FILE and its overrides.
 void addExperiment(CLI::App& command, ExperimentArguments& arguments);
 
