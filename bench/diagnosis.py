@@ -108,9 +108,9 @@ def main():
         all_nothing += nothing
         missed += [f"{Path(file).stem} {r['term']}" for r in missing if int(r["tied"]) < int(r["tests"])]
         print(table.splitlines()[-1], flush=True)
-    table += make_row("all", all_missing, all_nothing, all_processes)
-    named = "\nNot named each time: " + ", ".join(missed) + ".\n" if missed else ""
-    arguments.out.write_text(HEAD + table + named)
+        named = "\nNot named each time: " + ", ".join(missed) + ".\n" if missed else ""
+        total = make_row("all", all_missing, all_nothing, all_processes)
+        arguments.out.write_text(HEAD + table + total + named)  # what is finished is kept
 
 
 if __name__ == "__main__":
