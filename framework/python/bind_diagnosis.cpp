@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/measured_columns.hpp"

@@ -7,7 +7,7 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/verdict.hpp"
 #include "framework/study/diagnosis/force_figures.hpp"

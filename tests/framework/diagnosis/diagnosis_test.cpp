@@ -5,7 +5,7 @@
 #include <set>
 
 #include "framework/base/text/source_location.hpp"
-#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "tests/framework/diagnosis/measured_cart.hpp"
 

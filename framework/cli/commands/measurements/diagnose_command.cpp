@@ -5,7 +5,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/diagnosis/augment.hpp"
-#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/inference_source.hpp"

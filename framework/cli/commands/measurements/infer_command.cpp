@@ -14,7 +14,7 @@
 #include "framework/cli/commands/measurements/infer_history.hpp"
 #include "framework/cli/commands/measurements/infer_options.hpp"
 #include "framework/cli/waiting_line.hpp"
-#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/inference_source.hpp"

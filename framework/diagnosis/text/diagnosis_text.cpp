@@ -1,4 +1,4 @@
-#include "framework/diagnosis/diagnosis_text.hpp"
+#include "framework/diagnosis/text/diagnosis_text.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,178 @@
+#include "framework/diagnosis/term_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "framework/base/text/nearest_name.hpp"
+#include "framework/diagnosis/second_test.hpp"
+#include "framework/diagnosis/term_exchange.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+
+namespace {
+
+/// So many of the best by their scores are fitted: the linear model ranks them wrongly where the misfit is
+/// large.
+constexpr std::size_t kFittedTerms = 6;
+
+/// Of the level, for pairs of terms: singles have the rest.
+constexpr double kPairShare = 0.1;
+
+/// Whether chi-square is no more than three standard deviations above its mean with a term.
+bool isExplainedBy(const CurrentFit& current, const RankedTerm& single) {
+  return single.finding.chi_square < current.degrees + 3.0 * std::sqrt(2.0 * current.degrees);
+}
+
+/// Puts a term first.
+std::size_t takeAccepted(const std::string& term, std::vector<RankedTerm>& ranked) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < ranked.size(); ++i) {
+    names.push_back(ranked[i].finding.candidate.term);
+    if (names.back() == term) {
+      std::rotate(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(i),
+                  ranked.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      return 1;
+    }
+  }
+  throw ExperimentError(
+      "'" + term +
+      "' is not a term that these recordings can tell from the parameters; leave --accept out "
+      "for a list of those that they can" +
+      suggestName(term, names));
+}
+
+}  // namespace
+
+TermSearch::TermSearch(const RecordedFeatures& recordings, const DiagnosisOptions& options, CurrentFit first,
+                       bool is_explained, Index shared)
+    : recordings_(recordings),
+      options_(options),
+      fits_{std::move(first)},
+      is_explained_(is_explained),
+      shared_(shared) {}
+
+DiagnosisStep TermSearch::takeStep(std::size_t number) {
+  const CurrentFit current = fits_.back();
+  const ScoredCandidates scored = scoreCandidates(current.experiment, recordings_, current.point);
+  std::vector<RankedTerm> ranked = rankTerms(scored, current, shared_);
+  DiagnosisStep step{current.chi_square, current.degrees, scored.tested, {}};
+  const bool is_given = !options_.accepted.empty();
+  const std::size_t fitted =
+      is_given ? takeAccepted(options_.accepted[number], ranked) : countSignificant(ranked);
+  for (std::size_t i = 0; i < fitted; ++i) {
+    fitRanked(current, recordings_, scored, shared_, options_.level, ranked[i]);
+  }
+  std::stable_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(fitted), hasMoreEvidence);
+  step.found =
+      fitted > 0 && ranked.front().finding.fitted && (is_given || ranked.front().finding.log_evidence > 0.0);
+  if (is_given && !step.found) {
+    throw std::runtime_error(options_.accepted[number] + ": no fit with this term succeeded");
+  }
+  for (const RankedTerm& one : ranked) {
+    step.ranked.push_back(one.finding);
+  }
+  const std::optional<FittedPair> pair =
+      is_given ? std::nullopt : findBetterPair(current, scored, step.found ? &ranked.front() : nullptr);
+  if (pair) {
+    takePair(*pair, step);
+  } else if (step.found) {
+    takeFirst(current, ranked, step);
+  }
+  return step;
+}
+
+void TermSearch::takeFirst(const CurrentFit& current, const std::vector<RankedTerm>& ranked,
+                           DiagnosisStep& step) {
+  const bool is_given = !options_.accepted.empty();
+  if (!is_given) {
+    setTied(current, step);
+  }
+  step.log_evidence = ranked.front().finding.log_evidence;
+  CurrentFit next = addFitted(current, ranked.front());
+  if (!is_given) {
+    step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
+    step.rivals = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_.level, next);
+  }
+  fits_.push_back(std::move(next));
+  const bool is_same = std::none_of(step.rivals.begin(), step.rivals.end(),
+                                    [](const TermRival& rival) { return rival.took_over; });
+  const std::size_t averaged = is_same ? step.tied : 0;  // fitted beside terms that are there still
+  tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(averaged));
+}
+
+void TermSearch::takePair(const FittedPair& pair, DiagnosisStep& step) {
+  step.found = true;
+  const auto same = std::find_if(step.ranked.begin(), step.ranked.end(), [&](const TermFinding& one) {
+    return one.candidate.term == pair.first.candidate.term;
+  });
+  TermFinding first = pair.first;
+  if (same != step.ranked.end()) {
+    first.z = same->z;
+    first.p_value = same->p_value;
+    step.ranked.erase(same);
+  }
+  step.ranked.insert(step.ranked.begin(), first);
+  step.partner = pair.second;
+  step.log_evidence = pair.log_evidence;
+  fits_.push_back(pair.fit);
+  tied_.emplace_back();
+}
+
+/// Two terms that are missing together, where the best single one, if there is one, leaves something
+/// unexplained and is none of them. They must explain more than it does with any other.
+std::optional<FittedPair> TermSearch::findBetterPair(const CurrentFit& current,
+                                                     const ScoredCandidates& scored,
+                                                     const RankedTerm* single) const {
+  const bool has_room = current.terms.size() + 2 <= static_cast<std::size_t>(options_.max_terms);
+  const bool is_explained =
+      single != nullptr ? isExplainedBy(current, *single) : current.terms.empty() && is_explained_;
+  const std::optional<TermPair> best =
+      has_room && !is_explained ? findPair(scored) : std::optional<TermPair>();
+  if (!best || best->p_value > kPairShare * options_.level) {
+    return {};
+  }
+  std::optional<FittedPair> with_single;
+  if (single != nullptr) {
+    const std::string& term = single->finding.candidate.term;
+    if (scored.candidates[best->first].term == term || scored.candidates[best->second].term == term) {
+      return {};
+    }
+    const std::optional<TermPair> rival = findPair(scored, term);
+    if (rival && best->score.log_evidence - rival->score.log_evidence < kTiedEvidence) {
+      return {};
+    }
+    with_single =
+        rival ? fitPair(current, recordings_, scored, *rival, shared_, options_.level) : with_single;
+  }
+  std::optional<FittedPair> fitted = fitPair(current, recordings_, scored, *best, shared_, options_.level);
+  const double least = std::max(with_single ? with_single->log_evidence : 0.0,
+                                single != nullptr ? single->finding.log_evidence : 0.0);
+  return fitted && fitted->log_evidence > least + kTiedEvidence ? fitted : std::nullopt;
+}
+
+std::size_t TermSearch::countSignificant(const std::vector<RankedTerm>& ranked) const {
+  std::size_t count = 0;
+  while (count < std::min(ranked.size(), kFittedTerms) &&
+         ranked[count].finding.p_value < (1.0 - kPairShare) * options_.level) {
+    ++count;
+  }
+  return count;
+}
+
+/// Those whose evidence is hardly less than that of the first, and the test that would tell.
+void TermSearch::setTied(const CurrentFit& current, DiagnosisStep& step) const {
+  while (step.tied < step.ranked.size() && step.ranked[step.tied].fitted &&
+         step.ranked.front().log_evidence - step.ranked[step.tied].log_evidence < kTiedEvidence) {
+    ++step.tied;
+  }
+  if (step.tied > 1) {
+    const std::vector<TermFinding> tied(step.ranked.begin(),
+                                        step.ranked.begin() + static_cast<std::ptrdiff_t>(step.tied));
+    step.advice = adviseSecondTest(current.experiment, recordings_, current.point, tied);
+  }
+}
+
+}  // namespace twinmap

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/diagnosis/diagnosis.hpp"
+#include "framework/diagnosis/scored_candidates.hpp"
+#include "framework/diagnosis/term_sets.hpp"
+
+namespace twinmap {
+
+/// Adds terms to a model that does not explain its recordings, a step after the other.
+class TermSearch {
+ public:
+  /// first: without any term, `shared` parameters of the machine; is_explained: whether that explains the
+  /// recordings. `recordings` and `options` must outlive the object.
+  TermSearch(const RecordedFeatures& recordings, const DiagnosisOptions& options, CurrentFit first,
+             bool is_explained, Eigen::Index shared);
+
+  /// The candidates on top of what was found before, and the one or two taken, if any. number: of steps that
+  /// found some. Throws std::runtime_error if no fit with an accepted term succeeds, ExperimentError if it is
+  /// no candidate. Cost: one simulation with derivatives a recording, and up to some ten fits.
+  DiagnosisStep takeStep(std::size_t number);
+
+  /// Without a term, then after each step that found some.
+  const std::vector<CurrentFit>& getFits() const { return fits_; }
+  /// Of each such step the terms that are tied, the one taken first; none where it is not there any more.
+  const std::vector<std::vector<RankedTerm>>& getTied() const { return tied_; }
+
+ private:
+  void takeFirst(const CurrentFit& current, const std::vector<RankedTerm>& ranked, DiagnosisStep& step);
+  void takePair(const FittedPair& pair, DiagnosisStep& step);
+  std::optional<FittedPair> findBetterPair(const CurrentFit& current, const ScoredCandidates& scored,
+                                           const RankedTerm* single) const;
+  std::size_t countSignificant(const std::vector<RankedTerm>& ranked) const;
+  void setTied(const CurrentFit& current, DiagnosisStep& step) const;
+
+  const RecordedFeatures& recordings_;
+  const DiagnosisOptions& options_;
+  std::vector<CurrentFit> fits_;
+  std::vector<std::vector<RankedTerm>> tied_;
+  const bool is_explained_;
+  const Eigen::Index shared_;
+};
+
+}  // namespace twinmap
