@@ -5,8 +5,8 @@
 #include "framework/base/json/json.hpp"
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
+#include "framework/diagnosis/text/diagnosis_text.hpp"
 
 namespace twinmap {
 
