@@ -29,7 +29,9 @@ namespace {
 /// The joint search begins where the recordings alone ended; so few starts of its own suffice.
 constexpr int kOwnStarts = 8;
 /// Of a recording alone, where there are many parameters and each simulation is dear: their means and
-/// standard deviations are then known to a tenth of one, which is enough to show what each recording adds.
+/// standard deviations are then known to a tenth of one, which is enough to show what each recording adds. So
+/// is a linear response about its best fit, unless a number of draws is asked for: draws that the simulator
+/// weighs would take as long as the rest.
 constexpr int kDrawsAlone = 128;
 /// Of all recordings of such a machine, unless given: half of what others take. With an effective sample size
 /// of half of these, means are known to a tenth of a standard deviation.
@@ -224,6 +226,7 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
       makePosteriorOptions(members_.front().reader->getExperiment(),
                            draws.value_or(has_many ? kDrawsOfMany : SimulatorPosteriorOptions{}.draws));
   options_.draws = has_many ? std::min(joint_options_.draws, kDrawsAlone) : joint_options_.draws;
+  options_.is_linear = has_many && !draws;
   joint_options_.search.scouts = has_many ? 0 : kOwnStarts;
   joint_options_.search.starts = 2 * kOwnStarts;
   joint_options_.search.max_batches = 1;
@@ -340,6 +343,7 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
     trials.back().simulator = simulators.back().get();
   }
   inferred.alone = inferAlone(recordings, trials);
+  inferred.alone_is_linear = options_.is_linear;
   for (const RecordingInference& one : inferred.alone) {
     inferred.simulations += one.posterior.simulations;
     if (!(one.posterior.degrees > 0.0)) {

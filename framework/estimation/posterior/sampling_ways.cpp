@@ -149,6 +149,15 @@ Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, 
 
 }  // namespace
 
+Sampling sampleLinearModel(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                           const PosteriorDrawOptions& options) {
+  MisfitSurface& surface = whole.upd();
+  Sampling sampling{{}, {found.basins, {}, false, {}}, {}, {}, 0};
+  sampling.drawn = drawLinear(surface, found.basins.front(), options.draws, options.seed);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  return sampling;
+}
+
 bool mayBend(const PosteriorProblem& problem) {
   return problem.drawn == static_cast<Index>(problem.unknown.size()) && problem.drawn <= kManyUnknown;
 }

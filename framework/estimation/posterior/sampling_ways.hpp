@@ -28,4 +28,8 @@ bool mayBend(const PosteriorProblem& problem);
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                          bool may_bend, const PosteriorDrawOptions& options);
 
+/// As if the response were linear about the best basin: no simulation.
+Sampling sampleLinearModel(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
+                           const PosteriorDrawOptions& options);
+
 }  // namespace twinmap

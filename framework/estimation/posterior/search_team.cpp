@@ -21,7 +21,7 @@ constexpr double kFirstDamping = 1e-2, kMinDamping = 1e-9, kMaxDamping = 1e8, kR
 constexpr double kHeldLinear = 0.75;      // of the gain that the linear model says
 constexpr double kLongestStep = 0.5;      // half of a coordinate's bounds
 constexpr double kConvergedGain = 0.01;   // of chi-square: a tenth of a standard deviation
-constexpr double kGainOfMany = 0.1;       // of many parameters, whose chi-square varies by some ten
+constexpr double kGainOfMany = 1.0;       // of many parameters, whose chi-square varies by some ten
 constexpr double kFirstDiagonal = 1e-12;  // of the largest: what the response does not depend on stays
 constexpr double kFarAbove = 50.0;        // of the best chi-square: e^-25 of its density
 
@@ -120,7 +120,8 @@ SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const Mat
 
 void SearchTeam::run(int max_iterations) {
   // By then whatever is near a minimum has come down to it; what must be better than a known basin, sooner.
-  const int first_judged = known_.empty() ? 5 : 3;
+  // Of many parameters an iteration is dear, and the response is nearly linear where their priors leave them.
+  const int first_judged = !known_.empty() ? 3 : surface_.getDimensions() > kManyUnknown ? 4 : 5;
   for (int i = 1; i <= max_iterations && improve(); ++i) {
     if (i == first_judged || i == 2 * first_judged) {
       giveUpHopeless();
@@ -211,6 +212,24 @@ void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
       settle(search);
     }
   }
+  if (surface_.getDimensions() > kManyUnknown) {  // into what others of these have found as well
+    std::for_each(moved.begin(), moved.end(), [this](Search* search) {
+      if (search->active) {
+        settle(*search);
+      }
+    });
+  }
+}
+
+/// Where a search is, or, of many parameters, where its linear model leads: of so many, place and chi-square
+/// do not agree with a basin's by chance, and each step takes a simulation with as many derivatives.
+SearchTeam::Place SearchTeam::findPlace(const Search& search) const {
+  const LocalSurface& local = search.local;
+  if (surface_.getDimensions() <= kManyUnknown) {
+    return {local.at, local.misfit};
+  }
+  return {take(local, calcStep(local, search.held, kMinDamping)),
+          local.misfit - predictGain(local, search.held)};
 }
 
 /// Ends a search that has come into a known basin, both by its place and by its chi-square: a packet of lanes
@@ -220,10 +239,10 @@ void SearchTeam::settle(Search& search) {
   if (search.held.size() > 0) {
     return;
   }
+  const Place place = findPlace(search);
   const auto own = std::find_if(known_.begin(), known_.end(), [&](const Basin& basin) {
     return search.local.misfit >= basin.local.misfit &&
-           search.local.misfit < basin.local.misfit + kBasinReach * kBasinReach &&
-           liesIn(basin, search.local.at);
+           place.misfit < basin.local.misfit + kBasinReach * kBasinReach && liesIn(basin, place.at);
   });
   if (own != known_.end()) {
     search.local = own->local;

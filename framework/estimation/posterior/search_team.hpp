@@ -39,9 +39,15 @@ class SearchTeam {
     std::vector<double> factors{};  ///< of the damping, that an iteration tries
   };
 
+  struct Place {
+    Eigen::VectorXd at;
+    double misfit;
+  };
+
   bool improve();
   std::vector<Search*> listActive();
   void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to);
+  Place findPlace(const Search& search) const;
   void settle(Search& search);
   const LocalSurface* findBest() const;
   void giveUpHopeless();

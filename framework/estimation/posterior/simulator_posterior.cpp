@@ -122,7 +122,10 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
   }
   const bool is_spared = options.spares_misfit && !posterior.isExplained();
-  const Sampling sampling = samplePosterior(problem, found, whole, mayBend(problem) && !is_spared, options);
+  const Sampling sampling =
+      options.is_linear && problem.drawn > kManyUnknown
+          ? sampleLinearModel(problem, found, whole, options)
+          : samplePosterior(problem, found, whole, mayBend(problem) && !is_spared, options);
   posterior.simulations = surface.getSimulations() + sampling.simulations;
   posterior.effective_sample_size = sampling.drawn.effective_sample_size;
   posterior.pareto_shape = sampling.drawn.pareto_shape;

@@ -64,6 +64,9 @@ struct SimulatorPosteriorOptions : PosteriorDrawOptions {
   /// Whether draws that mixtures about the basins do not give are not sought by sums and walks where noise
   /// does not explain the best point: they would be of a wrong model.
   bool spares_misfit = false;
+  /// Of more than kManyUnknown: whether draws are those of a linear response about the best fit, within the
+  /// prior and the bounds, without a simulation of any.
+  bool is_linear = false;
   bool profiles = false;  ///< whether profile likelihoods are wanted, of up to kManyUnknown, all drawn
 };
 

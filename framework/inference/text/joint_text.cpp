@@ -103,7 +103,7 @@ std::string makeEstimateTable(const JointInference& inferred, const std::vector<
 }
 
 std::string makeAloneTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  std::vector<std::vector<std::string>> rows{{"alone"}};
+  std::vector<std::vector<std::string>> rows{{inferred.alone_is_linear ? "alone, linear" : "alone"}};
   rows.front().emplace_back("status");
   for (const ParameterSpec& parameter : parameters) {
     rows.front().push_back(parameter.name.text);
@@ -232,6 +232,7 @@ std::string makeJointJson(const JointInference& inferred, const std::vector<Para
                                                      {"distance", one.distance}});
     }
   }
+  json["alone_is_linear"] = inferred.alone_is_linear;
   json["trials"] = makeTrialsJson(inferred, parameters);
   json["simulations"] = inferred.simulations;
   return formatJson(json);

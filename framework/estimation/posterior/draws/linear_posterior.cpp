@@ -62,46 +62,58 @@ VectorXd calcLinearLosses(const MisfitSurface& surface, const Basin& basin, cons
          apart.transpose() * descent;
 }
 
-/// One chain of draws of the linear posterior, and what each weighs (log).
+/// One chain of draws of the linear posterior.
 class LinearChain {
  public:
-  LinearChain(MisfitSurface& surface, const Basin& basin, std::uint64_t seed)
-      : surface_(surface),
-        basin_(basin),
+  LinearChain(const MisfitSurface& surface, const Basin& basin, std::uint64_t seed)
+      : target_(makeLinear(surface, basin)),
         numbers_(makeNumbers(RandomStream(seed, RandomPurpose::kPosterior))),
         at_(basin.local.at) {}
 
-  importance::Round draw(int count) {
+  MatrixXd draw(int count) {
     constexpr int kSteps = 50;  // a draw: those of a uniform prior in a corner hardly depend on each other
-    const MatrixXd points =
-        importance::sampleEllipticalSlices(makeLinear(surface_, basin_), at_, count, kSteps, numbers_);
+    const MatrixXd points = importance::sampleEllipticalSlices(target_, at_, count, kSteps, numbers_);
     at_ = points.rightCols(1);
-    VectorXd log_weights = surface_.calcLogPosteriors(points) + calcLinearLosses(surface_, basin_, points);
-    for (Index i = 0; i < count; ++i) {
-      log_weights[i] -= surface_.calcLogPrior(points.col(i));
-    }
-    return {points, log_weights};
+    return points;
   }
 
  private:
-  MisfitSurface& surface_;
-  const Basin& basin_;
+  const importance::TiltedNormal target_;
   const importance::SliceNumbers numbers_;
   VectorXd at_;
 };
+
+/// What draws of the linear posterior weigh by the simulator (log).
+VectorXd calcLogWeights(MisfitSurface& surface, const Basin& basin, const MatrixXd& points) {
+  VectorXd log_weights = surface.calcLogPosteriors(points) + calcLinearLosses(surface, basin, points);
+  for (Index i = 0; i < points.cols(); ++i) {
+    log_weights[i] -= surface.calcLogPrior(points.col(i));
+  }
+  return log_weights;
+}
 
 }  // namespace
 
 AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws, int most_rounds,
                                std::uint64_t seed) {
   LinearChain chain(surface, basin, seed);
-  return importance::drawInRounds([&](int) { return chain.draw(draws); }, most_rounds);
+  const auto draw_round = [&](int) {
+    const MatrixXd points = chain.draw(draws);
+    return importance::Round{points, calcLogWeights(surface, basin, points)};
+  };
+  return importance::drawInRounds(draw_round, most_rounds);
+}
+
+AdaptiveDraws drawLinear(const MisfitSurface& surface, const Basin& basin, int draws, std::uint64_t seed) {
+  const MatrixXd points = LinearChain(surface, basin, seed).draw(draws);
+  return {importance::weigh(points, VectorXd::Zero(draws)), static_cast<double>(draws), 0.0, 1};
 }
 
 double calcNonlinearity(MisfitSurface& surface, const Basin& basin, std::uint64_t seed) {
   // The variance is then known to a fifth; of many parameters, whose simulations are dear, to 30 %.
   const int draws = surface.getDimensions() > kManyUnknown ? 24 : 48;
-  const Eigen::ArrayXd logs = LinearChain(surface, basin, seed).draw(draws).log_weights.array();
+  const Eigen::ArrayXd logs =
+      calcLogWeights(surface, basin, LinearChain(surface, basin, seed).draw(draws)).array();
   return logs.allFinite() ? (logs - logs.mean()).square().mean() : std::numeric_limits<double>::infinity();
 }
 

@@ -21,6 +21,10 @@ constexpr Eigen::Index kFewUnknown = 8;
 importance::AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& basin, int draws,
                                            int most_rounds, std::uint64_t seed);
 
+/// Draws of that posterior as it would be if the response were linear, of equal weight: no simulation.
+importance::AdaptiveDraws drawLinear(const MisfitSurface& surface, const Basin& basin, int draws,
+                                     std::uint64_t seed);
+
 /// How far from linear the response is where that posterior has its mass: the variance of the logarithms of
 /// some draws' weights, infinite where one of them cannot be simulated. What is straight in the parameters is
 /// bent in their logarithms, and the other way about.
