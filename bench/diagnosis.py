@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Holds `twinmap diagnose` to its bars on eight mechanisms of different kinds and writes a page.
 
-Usage: bench/diagnosis.py STUDY [--terms N] [--tests N] [--nothing N] --out FILE
+Usage: bench/diagnosis.py STUDY [--terms N] [--tests N] [--nothing N] [--mechanism NAME ...] [--logs DIR] --out FILE
 
 STUDY is the program diagnosis_study (bench/framework/diagnosis). Of each mechanism, N terms that its recordings can show,
 spread evenly over the list of candidates, are missing from the model in turn, by 1.2 to 30 times chi-square; and nothing is.
-Then a random force acts on each coordinate in turn.
+Then a random force acts on each coordinate in turn. --logs keeps what STUDY prints of each term, and takes what is there
+already instead of running it again.
 """
 import argparse
 import re
@@ -40,15 +41,19 @@ the diagnosis. Time: of a processor, a diagnosis with both posteriors.
 """
 
 
-def run(study, file, terms, tests, seed=1):
-    command = [study, str(ROOT / file), str(tests), str(seed), *terms]
-    return [
-        m.groupdict()
-        for m in map(
-            LINE.match, subprocess.run(command, capture_output=True, text=True, check=True).stdout.splitlines()
-        )
-        if m
-    ]
+def run(study, file, terms, tests, logs=None):
+    lines = []
+    for term in terms or [None]:
+        log = logs and logs / f"{Path(file).stem}-{term or 'visible'}-{tests}.log"
+        if log and log.exists():
+            lines += log.read_text().splitlines()
+            continue
+        command = [study, str(ROOT / file), str(tests), "1"] + ([term] if term else [])
+        printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+        if log:
+            log.write_text(printed)
+        lines += printed.splitlines()
+    return [m.groupdict() for m in map(LINE.match, lines) if m]
 
 
 def choose(names, count):
@@ -92,16 +97,21 @@ def main():
     parser.add_argument("--terms", type=int, default=8)
     parser.add_argument("--tests", type=int, default=2)
     parser.add_argument("--nothing", type=int, default=12)
+    parser.add_argument("--mechanism", nargs="*", default=[], help="only these, by the names of their files")
+    parser.add_argument("--logs", type=Path, help="folder")
     parser.add_argument("--out", type=Path, required=True, help="the page, Markdown")
     arguments = parser.parse_args()
+    if arguments.logs:
+        arguments.logs.mkdir(parents=True, exist_ok=True)
+    chosen = [file for file in MECHANISMS if not arguments.mechanism or Path(file).stem in arguments.mechanism]
     table = "| mechanism | first or tied | nothing found where nothing is missing | alike | second test | random force | coverage before | after | nothing missing | s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
     all_missing, all_nothing, all_processes, missed = [], [], [], []
-    for file in MECHANISMS:
-        names = [row["term"] for row in run(arguments.study, file, [], 0)]
-        missing = run(arguments.study, file, choose(names, arguments.terms), arguments.tests)
-        nothing = run(arguments.study, file, ["none"], arguments.nothing)
+    for file in chosen:
+        names = [row["term"] for row in run(arguments.study, file, [], 0, arguments.logs)]
+        missing = run(arguments.study, file, choose(names, arguments.terms), arguments.tests, arguments.logs)
+        nothing = run(arguments.study, file, ["none"], arguments.nothing, arguments.logs)
         forces = [name for name in names if name.startswith("process.")]
-        processes = run(arguments.study, file, forces, arguments.tests)
+        processes = run(arguments.study, file, forces, arguments.tests, arguments.logs) if forces else []
         table += make_row(Path(file).stem, missing, nothing, processes)
         all_processes += processes
         all_missing += missing
