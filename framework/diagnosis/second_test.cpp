@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
@@ -35,9 +37,19 @@ TestDerivatives calcTestDerivatives(const ExperimentSpec& experiment, const Reco
           jacobian.rightCols(jacobian.cols() - p - all.added)};
 }
 
-/// Whether chi-square of any other term is so much larger, where the first is missing by what was found.
-bool tells(const TestDerivatives& first, const TestDerivatives& second, double estimate) {
-  constexpr double kTold = 2.0 * (kTiedEvidence + 3.0);  // the evidence differs by twice what ties
+/// The least difference D of chi-square without noise behind which terms are told apart in 95 % of
+/// measurements: the evidence differs by D/2 with a standard deviation of sqrt(D), and ties below
+/// kTiedEvidence.
+double calcToldChiSquare() {
+  constexpr double kQuantile = 1.645;  // of the normal distribution at 95 %
+  const double root = kQuantile + std::sqrt(kQuantile * kQuantile + 2.0 * kTiedEvidence);
+  return root * root;
+}
+
+/// Whether both tests tell each of the terms from all others, where it is missing by what was found: any of
+/// them may be the one.
+bool tells(const TestDerivatives& first, const TestDerivatives& second,
+           const std::vector<TermFinding>& tied) {
   const Index n = first.machine.rows(), m = second.machine.rows(), p = first.machine.cols();
   MatrixXd jacobian = MatrixXd::Zero(n + m, p + first.own.cols() + second.own.cols());
   jacobian.leftCols(p) << first.machine, second.machine;
@@ -46,11 +58,14 @@ bool tells(const TestDerivatives& first, const TestDerivatives& second, double e
   MatrixXd terms(n + m, first.terms.cols());
   terms << first.terms, second.terms;
   const ScoreTest test(VectorXd::Zero(n + m), jacobian, terms);
-  const double whole = estimate * test.calcLength(0);
-  for (Index k = 1; k < terms.cols(); ++k) {
-    const double likeness = test.calcLikeness(0, k);
-    if (whole * whole * (1.0 - likeness * likeness) < kTold) {
-      return false;
+  const double told = calcToldChiSquare();
+  for (Index i = 0; i < terms.cols(); ++i) {
+    const double whole = tied[static_cast<std::size_t>(i)].estimate * test.calcLength(i);
+    for (Index k = 0; k < terms.cols(); ++k) {
+      const double likeness = test.calcLikeness(i, k);
+      if (k != i && whole * whole * (1.0 - likeness * likeness) < told) {
+        return false;
+      }
     }
   }
   return true;
@@ -70,7 +85,7 @@ std::string adviseSecondTest(const ExperimentSpec& experiment, const RecordedFea
   const TestDerivatives first = calcTestDerivatives(experiment, recordings, point, candidates, 1.0);
   for (const double factor : {2.0, 0.5, 4.0}) {
     const TestDerivatives second = calcTestDerivatives(experiment, recordings, point, candidates, factor);
-    if (tells(first, second, tied.front().estimate)) {
+    if (tells(first, second, tied)) {
       return fmt::format("a second test at {} times the amplitude would", toText(factor));
     }
   }

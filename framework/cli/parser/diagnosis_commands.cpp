@@ -1,7 +1,11 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <string>
+#include <vector>
 
+#include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/measurements/own_file.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 
 namespace twinmap::cli {
@@ -17,6 +21,18 @@ void addStarts(CLI::App& command, std::vector<double>& starts) {
       .add_option("--start", starts,
                   "Time in the file (s) at which the model's time is 0; several are several windows")
       ->type_name("S");
+}
+
+/// Not in the help: says what to do instead, before anything is said to be missing.
+void refuseTrials(CLI::App& command) {
+  const auto refuse = [name = command.get_name()](const std::vector<std::string>& trials) {
+    throw ExperimentError("--trial " + trials.front() + ": " + name +
+                          " takes recordings of one experiment: " + describeOwnFile() +
+                          ", and give it instead, with the trial's recordings");
+  };
+  command.add_option_function<std::vector<std::string>>("--trial", refuse)
+      ->allow_extra_args(false)
+      ->group("");
 }
 
 void addDiagnose(CLI::App& app) {
@@ -90,6 +106,7 @@ void addValidate(CLI::App& app) {
       ->check(makePositiveCheck())
       ->type_name("R");
   command->add_flag("--json", arguments->json, "Print a line of JSON");
+  refuseTrials(*command);
   command->callback([arguments] { validate(*arguments); });
 }
 
@@ -105,6 +122,7 @@ void addSelect(CLI::App& app) {
   addKnown(*command, arguments->known);
   addStarts(*command, arguments->starts);
   command->add_flag("--json", arguments->json, "Print a line of JSON");
+  refuseTrials(*command);
   command->callback([arguments] { select(*arguments); });
 }
 

@@ -56,12 +56,17 @@ class Diagnose(FolderTestCase):
         inferred = call("infer", corrected, *recordings, "--json")
         self.assertEqual(inferred.returncode, 0, inferred.stderr)
         self.assertIn("drag.x", self.diagnose(file))  # blind spots of both
+        soft, page = recordings[1].split("=")[1], self.folder / "p.html"
+        own_file = "twinmap check FILE trial=NAME"
         for arguments, words in [
-            ([file, recordings[1].split("=")[1]], "which trial does it record"),
-            ([CART, *recordings[:2]], "has no trials"),
-            ([file, *recordings, "--page", self.folder / "p.html"], "one trial"),
+            (["diagnose", file, soft], "which trial does it record"),
+            (["diagnose", CART, *recordings[:2]], "has no trials"),
+            (["diagnose", file, *recordings, "--page", page], own_file),
+            (["infer", file, *recordings, "--diagnose", "--page", page], "twinmap diagnose FILE --trial"),
+            (["validate", file, *recordings, "--against", soft], own_file),
+            (["select", file, CART, *recordings], own_file),
         ]:
-            refused = call("diagnose", *arguments)
+            refused = call(*arguments)
             self.assertEqual(refused.returncode, 2, refused.stderr)
             self.assertIn(words, refused.stderr)
 
@@ -172,6 +177,13 @@ class Diagnose(FolderTestCase):
             result = call("diagnose", *arguments)
             self.assertEqual(result.returncode, 2, result.stdout)
             self.assertIn(part, result.stderr)
+
+    def test_the_page_of_estimates_is_not_that_of_a_diagnosis(self):
+        page = self.folder / "none.html"
+        result = call("infer", CART, self.sound, "--diagnose", "--page", page)
+        self.assertEqual(result.returncode, 2, result.stdout)
+        self.assertIn(f"twinmap diagnose {CART} {self.sound} --page {page}", result.stderr)
+        self.assertFalse(page.exists())
 
 
 DRIVEN = """name: driven

@@ -4,6 +4,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/measurements/own_file.hpp"
 #include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/experiment_file.hpp"
@@ -40,8 +41,8 @@ RecordedFeatures readOfTrials(const DiagnoseArguments& arguments, const Experime
                           ": the experiment has no trials; give the file alone");
   }
   if (!arguments.page.empty()) {
-    throw ExperimentError(
-        "--page draws recordings of one trial; leave it out, or choose one by its own file");
+    throw ExperimentError("--page draws recordings of one trial: " + describeOwnFile() +
+                          ", and diagnose that with its recordings and --page");
   }
   return readTrials(experiment, parseTrialFiles(arguments.trials), arguments.starts,
                     parseKnownValues(arguments.known));

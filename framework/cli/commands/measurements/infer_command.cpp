@@ -235,6 +235,16 @@ void keepFreedMemory() {
   }
 }
 
+/// --page draws estimates; whoever asks for a diagnosis as well expects that of the diagnosis.
+void requireOnePage(const InferArguments& arguments) {
+  if (arguments.diagnose && !arguments.page.empty()) {
+    const std::string file = arguments.files.empty() ? "MEASUREMENT" : arguments.files.front();
+    throw ExperimentError(
+        "--page of infer draws estimates, not what --diagnose finds; its page: twinmap diagnose " +
+        arguments.run + " " + file + " --page " + arguments.page);
+  }
+}
+
 }  // namespace
 
 void infer(const InferArguments& arguments) {
@@ -257,6 +267,7 @@ void infer(const InferArguments& arguments) {
                               ? "--follow reads measurements from the standard input; give no files"
                               : "give files of measurements, or --follow");
   }
+  requireOnePage(arguments);
   std::ios::sync_with_stdio(false);
   InferCommand command(arguments);
   if (arguments.follow) {

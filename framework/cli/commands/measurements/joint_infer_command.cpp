@@ -43,14 +43,14 @@ void requireJointArguments(const InferArguments& arguments) {
     throw ExperimentError(
         "--follow infers one measurement after another; leave --joint, --trial and --windows out");
   }
-  if (!arguments.page.empty()) {
-    throw ExperimentError(
-        "--page draws estimates of one measurement after another; leave --joint, --trial and --windows out");
-  }
   if (arguments.diagnose) {
     throw ExperimentError(
         "--diagnose is of one measurement; of several: twinmap diagnose FILE --trial NAME=RECORDING ... or "
         "RECORDING ...");
+  }
+  if (!arguments.page.empty()) {
+    throw ExperimentError(
+        "--page draws estimates of one measurement after another; leave --joint, --trial and --windows out");
   }
   if (!arguments.draws.empty()) {
     throw ExperimentError("--draws are of one measurement; leave it out, or --joint, --trial and --windows");
