@@ -228,8 +228,8 @@ SearchTeam::Place SearchTeam::findPlace(const Search& search) const {
   if (surface_.getDimensions() <= kManyUnknown) {
     return {local.at, local.misfit};
   }
-  return {take(local, calcStep(local, search.held, kMinDamping)),
-          local.misfit - predictGain(local, search.held)};
+  const VectorXd step = calcStep(local, search.held, kMinDamping);
+  return {take(local, step), local.misfit - local.descent.dot(step)};
 }
 
 /// Ends a search that has come into a known basin, both by its place and by its chi-square: a packet of lanes

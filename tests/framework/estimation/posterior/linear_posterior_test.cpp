@@ -18,9 +18,11 @@ using testing::Problem;
 constexpr int kParameters = 30, kSeenParameters = 10, kSampleTimes = 40;
 constexpr double kSampleNoise = 0.05;
 
-SimulatorPosterior sampleMany(Problem& problem, const VectorXd& features, int draws = 4000) {
+SimulatorPosterior sampleMany(Problem& problem, const VectorXd& features, int draws = 4000,
+                              bool is_linear = false) {
   SimulatorPosteriorOptions options;
   options.draws = draws;
+  options.is_linear = is_linear;
   return samplePosterior(problem.simulator, problem.model, {}, features, VectorXd::Zero(kParameters),
                          MatrixXd(), options);
 }
@@ -38,11 +40,7 @@ VectorXd respondToSome(const VectorXd& x) {
   return makeMixedMatrix() * x.head(kSeenParameters);
 }
 
-TEST(ManyParameters, AreLeastSquaresWhereSeenAndUniformWhereNot) {
-  Problem problem(kSampleTimes, respondToSome, testing::makeParameters(kParameters, -1.0, 1.0), kSampleNoise);
-  const VectorXd truth = VectorXd::LinSpaced(kParameters, -0.3, 0.3);
-  const VectorXd features = problem.measure(truth, kSampleNoise);
-  const SimulatorPosterior posterior = sampleMany(problem, features);
+void expectLeastSquaresWhereSeen(const SimulatorPosterior& posterior, const VectorXd& features) {
   ASSERT_TRUE(posterior.isReliable()) << posterior.message;
   const MatrixXd matrix = makeMixedMatrix();
   const MatrixXd covariance = kSampleNoise * kSampleNoise * MatrixXd((matrix.transpose() * matrix).inverse());
@@ -52,8 +50,19 @@ TEST(ManyParameters, AreLeastSquaresWhereSeenAndUniformWhereNot) {
     EXPECT_NEAR(posterior.mean[j], j < kSeenParameters ? mean[j] : 0.0, 0.1 * stddev);
     EXPECT_NEAR(posterior.stddev[j] / stddev, 1.0, 0.06);
   }
+}
+
+TEST(ManyParameters, AreLeastSquaresWhereSeenAndUniformWhereNot) {
+  Problem problem(kSampleTimes, respondToSome, testing::makeParameters(kParameters, -1.0, 1.0), kSampleNoise);
+  const VectorXd truth = VectorXd::LinSpaced(kParameters, -0.3, 0.3);
+  const VectorXd features = problem.measure(truth, kSampleNoise);
+  const SimulatorPosterior posterior = sampleMany(problem, features);
+  expectLeastSquaresWhereSeen(posterior, features);
   EXPECT_GT(posterior.effective_sample_size, 3900.0);  // the response is linear: all weights are the same
   EXPECT_LT(posterior.simulations, 3 * 4000);
+  const SimulatorPosterior unweighted = sampleMany(problem, features, 4000, true);
+  expectLeastSquaresWhereSeen(unweighted, features);
+  EXPECT_LE(unweighted.simulations + 4000, posterior.simulations);  // none of a draw
 }
 
 TEST(ManyParameters, KeepPriorsOfAnyShape) {
