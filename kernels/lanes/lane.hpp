@@ -10,10 +10,8 @@ namespace twinmap::lanes {
 /// What a lane's next step is for.
 enum class Mode {
   kIdle,
-  kBegin,    ///< a step of size 0, whose last slopes are those at the phase's begin
-  kRestart,  ///< once more, since the sensitivities have jumped there
-  kJump,     ///< nothing yet: the states jump before (LanePacket::doJumps)
-  kEvent,    ///< nothing yet: an event is due (LanePacket::doEvents)
+  kBegin,  ///< nothing yet: a phase begins (LanePacket::doBegins)
+  kEvent,  ///< nothing yet: an event is due (LanePacket::doEvents)
   kStep,
 };
 
@@ -37,18 +35,12 @@ struct Lane {
   static constexpr int kNoEvent = -2, kStartEvent = -1;
 
   const Phase& getPhase() const { return sample.phases[phase]; }
-  bool isInLastPhase() const { return phase + 1 == static_cast<int>(sample.phases.size()); }
+  bool isInLastPhase() const { return phase + 1 == sample.phases.size(); }
   double getPhaseEnd() const { return isInLastPhase() ? sample.end : sample.phases[phase + 1].begin; }
-  /// Whether the phase's begin moves with a parameter, so that the sensitivities jump.
-  bool hasJump() const { return phase > 0 && !getPhase().begin_slopes.empty(); }
-  /// How the time of what jumps moves with each parameter; null: not at all.
+  /// How the time of what jumps, or of the phase's begin, moves with each parameter; null: not at all.
   const std::vector<double>* findJumpSlopes() const {
     const std::vector<double>& slopes = mode == Mode::kEvent ? event_slopes : getPhase().begin_slopes;
     return slopes.empty() || (mode != Mode::kEvent && phase == 0) ? nullptr : &slopes;
-  }
-  void fail(Outcome outcome) {
-    result.outcome = outcome;
-    mode = Mode::kIdle;
   }
 };
 

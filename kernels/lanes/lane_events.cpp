@@ -157,8 +157,7 @@ void LanePacket::startEvent(int lane, int event) {
   Lane& l = lanes_[lane];
   ++l.result.events;
   if (++l.events_at_once > kMostAtOnce) {
-    arrays_.proposed[lane] = 0.0;
-    return l.fail(Outcome::kEventsStuck);
+    return fail(lane, Outcome::kEventsStuck);
   }
   l.event = event;
   l.fired[event] = 1;

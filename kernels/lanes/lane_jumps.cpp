@@ -1,19 +1,40 @@
-// States that jump where a phase begins.
+// Where a phase begins: states that bend or jump.
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/lanes/lane_packet.hpp"
 
 namespace twinmap::lanes {
 
-void LanePacket::doJumps() {
-  const unsigned lanes = std::exchange(jumping_, 0u);
-  jumpBy(*jumps_, lanes);
+void LanePacket::doBegins() {
+  const unsigned lanes = std::exchange(beginning_, 0u);
+  unsigned jumping = 0;
+  forEach(lanes, [&](int lane) { jumping |= lanes_[lane].getPhase().jumps ? 1u << lane : 0u; });
+  if (jumping != 0) {
+    jumpBy(*jumps_, jumping);
+  }
+  if ((lanes & ~jumping) != 0) {
+    bend(lanes & ~jumping);
+  }
   forEach(lanes, [this](int lane) { openPhase(lane); });
 }
 
+/// The solution is continuous, whenever the phase begins: f- dt + ds- = f+ dt + ds+. It costs one evaluation
+/// of f, two where the begin moves, and the steps keep their size: a table of a thousand lines a second is
+/// followed at one step a line.
+void LanePacket::bend(unsigned lanes) {
+  const unsigned moving = findMoving(lanes);
+  forEach(moving, [this](int lane) { moveBy(lane, 1.0); });
+  evaluateAt(lanes);
+  if (moving != 0) {
+    forEach(moving, [this](int lane) { moveBy(lane, -1.0); });
+    evaluateAt(moving);
+  }
+  forEach(lanes, [this](int lane) { beginAfter(lane); });
+}
+
 /// Where the jump's time moves with a parameter the states before it go on by f- dt, and those behind it came
-/// by f+ dt less (saltation): s+ = dh/dy (s- + f- dt) + dh/dt dt + dh/dp - f+ dt. Unlike the begin of other
-/// phases it costs one evaluation of f, two where it moves, and the steps keep their size.
+/// by f+ dt less (saltation): s+ = dh/dy (s- + f- dt) + dh/dt dt + dh/dp - f+ dt.
 void LanePacket::jumpBy(program::Interpreter& program, unsigned lanes) {
   forEach(lanes, [&](int lane) { prepareJump(lane, program); });
   program.calcParameters();
@@ -21,15 +42,21 @@ void LanePacket::jumpBy(program::Interpreter& program, unsigned lanes) {
   program.calcOutputs();
   forEach(lanes, [&](int lane) { takeJump(lane, program); });
   evaluateAt(lanes);
-  unsigned moving = 0;
-  forEach(lanes, [&](int lane) {
-    moving |= lanes_[lane].findJumpSlopes() != nullptr && directions_ > 0 ? 1u << lane : 0u;
-  });
-  if (moving != 0) {
-    forEach(moving, [this](int lane) { moveBack(lane); });
+  if (const unsigned moving = findMoving(lanes); moving != 0) {
+    forEach(moving, [this](int lane) { moveBy(lane, -1.0); });
     evaluateAt(moving);
   }
-  forEach(lanes, [this](int lane) { beginAfterJump(lane); });
+  forEach(lanes, [this](int lane) { beginAfter(lane); });
+}
+
+/// The lanes in which the time of what happens moves with a direction.
+unsigned LanePacket::findMoving(unsigned lanes) const {
+  unsigned moving = 0;
+  for (int lane = 0; lane < count_ && directions_ > 0; ++lane) {
+    const bool moves = (lanes & 1u << lane) != 0 && lanes_[lane].findJumpSlopes() != nullptr;
+    moving |= moves ? 1u << lane : 0u;
+  }
+  return moving;
 }
 
 void LanePacket::prepareJump(int lane, program::Interpreter& program) {
@@ -87,17 +114,18 @@ void LanePacket::evaluateAt(unsigned lanes) {
   });
 }
 
-void LanePacket::moveBack(int lane) {
+/// The sensitivities, along the slopes.
+void LanePacket::moveBy(int lane, double sign) {
   const std::vector<double>& slopes = *lanes_[lane].findJumpSlopes();
   for (int j = 0; j < directions_; ++j) {
     for (int i = 0; i < states_; ++i) {
       const int at = i * count_ + lane;
-      arrays_.state[(1 + j) * states_ * count_ + at] -= slopes[j] * arrays_.slopes[1][at];
+      arrays_.state[(1 + j) * states_ * count_ + at] += sign * slopes[j] * arrays_.slopes[1][at];
     }
   }
 }
 
-void LanePacket::beginAfterJump(int lane) {
+void LanePacket::beginAfter(int lane) {
   Lane& l = lanes_[lane];
   double sum = 0.0;
   for (int row = 0; row < arrays_.rows; ++row) {
@@ -106,16 +134,23 @@ void LanePacket::beginAfterJump(int lane) {
   }
   for (int i = 0; i < arrays_.pivots; ++i) {
     if (arrays_.pivot_values[i][lane] <= 0.0) {
-      return l.fail(Outcome::kSingular);
+      return fail(lane, Outcome::kSingular);
     }
   }
   if (std::isnan(sum)) {
-    return l.fail(Outcome::kNonFinite);
+    return fail(lane, Outcome::kNonFinite);
   }
-  if (arrays_.proposed[lane] > 0.0 && (l.phase > 0 || l.mode == Mode::kEvent)) {
+  const bool is_event = l.mode == Mode::kEvent;
+  if (arrays_.proposed[lane] > 0.0 && (l.phase > 0 || is_event)) {
+    if (!is_event) {  // a phase may be so short that its first step is cut: the next may grow as if it were
+                      // not
+      const double length = arrays_.phase_end[lane] - arrays_.time[lane];
+      arrays_.growth[lane] = kLargestGrowth * std::max(1.0, arrays_.proposed[lane] / length);
+    }
     l.mode = Mode::kStep;
   } else {
     beginSteps(lane);
+    checkLimits(lane);
   }
 }
 

@@ -159,8 +159,8 @@ void LanePacket::release(int lane, SampleStream& stream) {
 void LanePacket::beginPhase(int lane, int phase) {
   Lane& l = lanes_[lane];
   l.phase = phase;
-  l.mode = l.getPhase().jumps ? Mode::kJump : Mode::kBegin;
-  jumping_ |= l.getPhase().jumps ? 1u << lane : 0u;
+  l.mode = Mode::kBegin;
+  beginning_ |= 1u << lane;
   for (int i = 0; i < phase_inputs_; ++i) {
     interpreter_.updPhaseInput(i)[lane] = l.getPhase().inputs[i];
   }
@@ -179,9 +179,6 @@ void LanePacket::beginPhase(int lane, int phase) {
          l.getPhase().begin < l.getPhaseEnd());
   arrays_.time[lane] = l.getPhase().begin;
   arrays_.phase_end[lane] = l.getPhaseEnd();
-  if (l.mode == Mode::kBegin) {
-    arrays_.proposed[lane] = 0.0;
-  }
 }
 
 void LanePacket::setNextOutput(int lane, int index) {

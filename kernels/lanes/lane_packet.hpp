@@ -33,14 +33,15 @@ class LanePacket {
   void doRound();
   unsigned doStep();
   void judge(int lane);
-  void jump(int lane);
-  void doJumps();
+  void doBegins();
+  void bend(unsigned lanes);
   void jumpBy(program::Interpreter& program, unsigned lanes);
   void prepareJump(int lane, program::Interpreter& program);
   void takeJump(int lane, const program::Interpreter& program);
   void evaluateAt(unsigned lanes);
-  void beginAfterJump(int lane);
-  void moveBack(int lane);
+  void beginAfter(int lane);
+  unsigned findMoving(unsigned lanes) const;
+  void moveBy(int lane, double sign);
   unsigned findEvents();
   unsigned findDips(unsigned looking, unsigned found);
   void calcGuardsWithin();
@@ -56,6 +57,7 @@ class LanePacket {
   void beginSteps(int lane);
   void endPhase(int lane);
   void checkLimits(int lane);
+  void fail(int lane, Outcome outcome);
   double calcNorm(int lane, const double* rows) const;
   void setNextOutput(int lane, int index);
 
@@ -76,7 +78,7 @@ class LanePacket {
   program::Interpreter interpreter_;
   OutputRecorder outputs_;
   std::optional<program::Interpreter> jumps_;
-  unsigned jumping_ = 0;  ///< lanes whose states jump before the next step
+  unsigned beginning_ = 0;  ///< lanes whose phase begins before the next step
   std::optional<EventPrograms> events_;
   unsigned firing_ = 0;    ///< lanes with an event due
   unsigned settling_ = 0;  ///< lanes in which events may be due

@@ -14,9 +14,9 @@ constexpr int kStepsBetweenClocks = 64;  // reading the clock costs as much as s
 }  // namespace
 
 void LanePacket::doRound() {
-  while ((jumping_ | firing_ | settling_) != 0) {
-    if (jumping_ != 0) {
-      doJumps();
+  while ((beginning_ | firing_ | settling_) != 0) {
+    if (beginning_ != 0) {
+      doBegins();
     }
     if ((firing_ | settling_) != 0) {
       doEvents();
@@ -53,28 +53,10 @@ unsigned LanePacket::doStep() {
   return engine_.finish(arrays_);
 }
 
-/// Before the new state is taken: what has failed, and where it has to be corrected.
+/// Before the new state is taken: what has failed.
 void LanePacket::judge(int lane) {
-  Lane& l = lanes_[lane];
   if (arrays_.smallest_pivot[lane] <= 0.0) {
-    l.fail(Outcome::kSingular);
-    arrays_.accepted[lane] = 0.0;
-  } else if (l.mode != Mode::kStep && arrays_.accepted[lane] == 0.0) {
-    l.fail(Outcome::kNonFinite);
-  } else if (l.mode == Mode::kBegin && l.hasJump()) {
-    jump(lane);
-  }
-}
-
-/// The solution is continuous where a phase begins, whenever that is: f- dt + ds- = f+ dt + ds+.
-void LanePacket::jump(int lane) {
-  const std::vector<double>& slopes = lanes_[lane].getPhase().begin_slopes;
-  for (int j = 0; j < directions_; ++j) {
-    for (int i = 0; i < states_; ++i) {
-      const int at = i * count_ + lane;
-      const double difference = arrays_.slopes[1][at] - arrays_.slopes[7][at];
-      arrays_.stage_state[(1 + j) * states_ * count_ + at] += slopes[j] * difference;
-    }
+    fail(lane, Outcome::kSingular);
   }
 }
 
@@ -102,21 +84,16 @@ void LanePacket::advance(int lane) {
   if (l.mode == Mode::kEvent) {
     return;
   }
-  if (l.mode == Mode::kBegin && l.hasJump()) {
-    l.mode = Mode::kRestart;
-  } else if (l.mode != Mode::kStep) {
-    beginSteps(lane);
-    openPhase(lane);
-  } else if (arrays_.time[lane] == arrays_.phase_end[lane]) {
+  if (arrays_.time[lane] == arrays_.phase_end[lane]) {
     endPhase(lane);
   } else {
     l.result.rejected += arrays_.accepted[lane] == 0.0 ? 1 : 0;
     const double time = std::max(std::abs(arrays_.time[lane]), kSmallestTime);
     if (arrays_.proposed[lane] <= kSmallestStep * time) {
-      l.fail(std::isfinite(arrays_.error[lane]) ? Outcome::kStepTooSmall : Outcome::kNonFinite);
+      fail(lane, std::isfinite(arrays_.error[lane]) ? Outcome::kStepTooSmall : Outcome::kNonFinite);
     }
   }
-  if (l.mode == Mode::kStep) {
+  if (l.mode != Mode::kIdle) {
     checkLimits(lane);
   }
 }
@@ -161,14 +138,21 @@ void LanePacket::checkLimits(int lane) {
   Lane& l = lanes_[lane];
   const double steps = arrays_.steps[lane];
   if (steps >= options_.max_steps) {
-    l.fail(Outcome::kStepLimit);
+    fail(lane, Outcome::kStepLimit);
   } else if (steps >= arrays_.next_check[lane]) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - l.start;
     if (elapsed.count() > options_.max_wall_time) {
-      l.fail(Outcome::kWallTime);
+      fail(lane, Outcome::kWallTime);
     }
     arrays_.next_check[lane] = std::min(steps + kStepsBetweenClocks, static_cast<double>(options_.max_steps));
   }
+}
+
+/// The lane stays where it is.
+void LanePacket::fail(int lane, Outcome outcome) {
+  lanes_[lane].result.outcome = outcome;
+  lanes_[lane].mode = Mode::kIdle;
+  arrays_.accepted[lane] = arrays_.proposed[lane] = 0.0;
 }
 
 }  // namespace twinmap::lanes

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <initializer_list>
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace twinmap::lanes {
@@ -12,12 +15,31 @@ struct Phase {
   bool jumps = false;                  ///< the states jump here, by Equations::jumps
 };
 
+/// The phases of a sample, their begins strictly increasing. Copies share them: a table of a thousand lines a
+/// second has thousands, the same ones for most samples.
+class Phases {
+ public:
+  Phases() : Phases(std::vector<Phase>{}) {}
+  Phases(std::initializer_list<Phase> phases) : Phases(std::vector<Phase>(phases)) {}
+  Phases(std::vector<Phase> phases)
+      : phases_(std::make_shared<const std::vector<Phase>>(std::move(phases))) {}
+
+  const Phase& operator[](int index) const { return (*phases_)[static_cast<std::size_t>(index)]; }
+  int size() const { return static_cast<int>(phases_->size()); }
+  bool empty() const { return phases_->empty(); }
+  std::vector<Phase>::const_iterator begin() const { return phases_->begin(); }
+  std::vector<Phase>::const_iterator end() const { return phases_->end(); }
+
+ private:
+  std::shared_ptr<const std::vector<Phase>> phases_;
+};
+
 /// One solution to find, and where its outputs go.
 struct Sample {
   int index = 0;  ///< the caller's
   std::vector<double> parameters;
   std::vector<double> initial;    ///< states, then their sensitivities direction by direction
-  std::vector<Phase> phases;      ///< one or more, their begins strictly increasing
+  Phases phases;                  ///< one or more
   double end = 0.0;               ///< s; of the last phase
   std::vector<double> delays{};   ///< s; values of Equations::delays
   double* outputs = nullptr;      ///< output by output, each at all times

@@ -27,7 +27,7 @@ struct StepArrays {
   double* error;           ///< largest of all rows, in tolerances; NaN where something is not finite
   double* accepted;        ///< 1 or 0
   // of the controller
-  double* proposed;  ///< size of the next step; 0: a step that leaves the state and finds its slopes
+  double* proposed;  ///< size of the next step; 0: one that leaves the state
   double* growth;    ///< by how much a step may be larger than the one before
   double* phase_end;
   double* next_output;  ///< first output time not yet kept, or infinity
@@ -37,6 +37,7 @@ struct StepArrays {
 
 /// A step of this part of the time, or of kSmallestTime (s), is too small: eight units in the last place.
 constexpr double kSmallestStep = 0x1p-49, kSmallestTime = 1e-9;
+constexpr double kLargestGrowth = 10.0;  // of a step over the one before
 
 /// Arithmetic of Dormand and Prince's 5(4) pair on all lanes at a time, for one number of lanes.
 struct StepEngine {

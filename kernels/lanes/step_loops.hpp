@@ -35,7 +35,7 @@ constexpr int kErrorStages[] = {1, 3, 4, 5, 6}, kDenseStages[] = {1, 3, 4, 5, 6,
 /// other two and 2 to 8 % more on most, 0.8 up to 6 % more. It rejects 0.2 % (silverbox) to 9 % (dry
 /// friction).
 constexpr double kSafety = 0.85;
-constexpr double kLargestGrowth = 10.0, kSmallestFactor = 0.1;
+constexpr double kSmallestFactor = 0.1;
 
 template <typename P, int chains>
 class StepLoops {

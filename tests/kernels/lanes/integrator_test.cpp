@@ -158,10 +158,8 @@ struct Gate {
     sample.parameters = {w, when};
     sample.initial.assign(moves ? 6 : 2, 0.0);
     sample.initial[0] = 1.0;
-    sample.phases = {{0.0, {0.0}}, {when, {1.0}}};
-    if (moves) {
-      sample.phases[1].begin_slopes = {0.0, 1.0};
-    }
+    sample.phases = {{0.0, {0.0}},
+                     {when, {1.0}, moves ? std::vector<double>{0.0, 1.0} : std::vector<double>{}}};
     sample.end = 3.0;
     return sample;
   }

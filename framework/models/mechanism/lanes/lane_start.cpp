@@ -55,7 +55,7 @@ void LaneStart::fillTimes(const SampleTimes& times, lanes::Sample& sample) {
   const bool same = !last_sample_.phases.empty() && times.events == last_times_.events &&
                     times.delays == last_times_.delays && times.origin == last_times_.origin;
   if (!same) {
-    last_sample_.phases.clear();  // where this fails nothing is kept
+    last_sample_.phases = {};  // where this fails nothing is kept
     fillPhases(model_, times, spec_.simulation.duration, output_times_, last_sample_);
     last_times_ = times;
   }

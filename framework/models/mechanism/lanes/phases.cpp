@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <utility>
 
 #include "framework/simulation/simulation_failure.hpp"
 
@@ -55,22 +56,21 @@ class PhaseMaker {
       addInstants(clock);
       std::inplace_merge(marks_.begin(), marks_.begin() + before, marks_.end(), isBefore);
     }
-    sample.end = duration_;
-    sample.phases.clear();
-    sample.phases.reserve(marks_.size());
+    phases_.reserve(marks_.size());
     for (const Mark& mark : marks_) {
-      addMark(mark, sample);
+      addMark(mark);
     }
-    if (sample.phases.empty()) {
-      return;  // nothing is integrated: modes alone
+    sample.end = duration_;
+    if (!phases_.empty()) {  // else nothing is integrated: modes alone
+      if (const int start = model_.sampling.start_input; start >= 0) {
+        phases_.front().inputs[start] = 1.0;
+        phases_.front().jumps = true;
+      }
+      if (phases_.back().begin >= duration_) {  // outputs at the end are those behind it
+        sample.end = phases_.back().begin * (1.0 + 0x1p-48);
+      }
     }
-    if (const int start = model_.sampling.start_input; start >= 0) {
-      sample.phases.front().inputs[start] = 1.0;
-      sample.phases.front().jumps = true;
-    }
-    if (sample.phases.back().begin >= duration_) {  // outputs at the end are those behind it
-      sample.end = sample.phases.back().begin * (1.0 + 0x1p-48);
-    }
+    sample.phases = std::move(phases_);
   }
 
  private:
@@ -120,15 +120,14 @@ class PhaseMaker {
   }
 
   /// To the phase that it falls on, or as a phase of its own.
-  void addMark(const Mark& mark, lanes::Sample& sample) {
-    const bool joins = !sample.phases.empty() && mark.slopes == nullptr &&
-                       sample.phases.back().begin_slopes.empty() &&
-                       mark.time - sample.phases.back().begin <= rounding_;
+  void addMark(const Mark& mark) {
+    const bool joins = !phases_.empty() && mark.slopes == nullptr && phases_.back().begin_slopes.empty() &&
+                       mark.time - phases_.back().begin <= rounding_;
     if (!joins) {
-      sample.phases.push_back({mark.time, std::vector<double>(model_.counts.phase_inputs), {}});
-      makeRoom(sample.phases);
+      phases_.push_back({mark.time, std::vector<double>(model_.counts.phase_inputs), {}});
+      makeRoom();
     }
-    lanes::Phase& phase = sample.phases.back();
+    lanes::Phase& phase = phases_.back();
     if (mark.slopes != nullptr) {
       phase.begin_slopes = *mark.slopes;
     }
@@ -143,12 +142,12 @@ class PhaseMaker {
 
   /// What comes at one time but moves otherwise: the earlier ones come a number before, but not before the
   /// start.
-  void makeRoom(std::vector<lanes::Phase>& phases) const {
-    for (std::size_t i = phases.size() - 1; i > 1 && phases[i].begin <= phases[i - 1].begin; --i) {
-      phases[i - 1].begin = std::nextafter(phases[i].begin, 0.0);
+  void makeRoom() {
+    for (std::size_t i = phases_.size() - 1; i > 1 && phases_[i].begin <= phases_[i - 1].begin; --i) {
+      phases_[i - 1].begin = std::nextafter(phases_[i].begin, 0.0);
     }
-    for (std::size_t i = 1; i < phases.size() && phases[i].begin <= phases[i - 1].begin; ++i) {
-      phases[i].begin = std::nextafter(phases[i - 1].begin, duration_);
+    for (std::size_t i = 1; i < phases_.size() && phases_[i].begin <= phases_[i - 1].begin; ++i) {
+      phases_[i].begin = std::nextafter(phases_[i - 1].begin, duration_);
     }
   }
 
@@ -161,6 +160,7 @@ class PhaseMaker {
   std::vector<double> events_;
   std::deque<std::vector<double>> slopes_;
   std::vector<Mark> marks_;
+  std::vector<lanes::Phase> phases_;
 };
 
 void requireUsable(const RecordedSampling& sampling, const Eigen::MatrixXd& delays) {

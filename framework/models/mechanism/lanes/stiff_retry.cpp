@@ -46,8 +46,8 @@ class RecordedProblem final : public HybridProblem {
 
   void enterPhase(double begin, State& x) override {
     const lanes::Phase& phase =
-        *std::find_if(sample_.phases.begin(), sample_.phases.end(),
-                      [begin](const lanes::Phase& one) { return one.begin == begin; });
+        *std::lower_bound(sample_.phases.begin(), sample_.phases.end(), begin,
+                          [](const lanes::Phase& one, double time) { return one.begin < time; });
     for (SingleProgram* program : {&derivative_, &output_, &jacobian_}) {
       program->enterPhase(sample_.parameters, phase.inputs);
     }
