@@ -1,8 +1,8 @@
 #include <pybind11/stl.h>
 
 #include "framework/base/files/atomic_file.hpp"
+#include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
-#include "framework/experiment/experiment_file.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/measured_columns.hpp"
 #include "framework/python/python_map.hpp"
@@ -58,7 +58,7 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
     }
   }
   return py::make_tuple(makeDiagnosisJson(diagnosis, names), makeDiagnosisTable(diagnosis, names),
-                        writeExperiment(diagnosis.corrected));
+                        writeCorrected(diagnosis.corrected));
 }
 
 /// JSON and text, as `twinmap diagnose` without recordings prints them.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -219,6 +220,17 @@ void copyMeasuredSignals(const std::vector<SignalSpec>& from, ModelSpec& model) 
           own.tables[i].times = signal.tables[i].times;
           own.tables[i].values = signal.tables[i].values;
         }
+      }
+    }
+  }
+}
+
+void dropMeasuredSignals(ExperimentSpec& experiment) {
+  for (SignalSpec& signal : experiment.model.excitation) {
+    for (TableSpec& table : signal.tables) {
+      if (table.measured && std::filesystem::exists(table.measured->file.text)) {
+        table.times.clear();
+        table.values.clear();
       }
     }
   }

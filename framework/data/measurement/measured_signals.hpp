@@ -27,6 +27,9 @@ void holdMeasuredEnds(SignalSpec& signal, double duration, double beside);
 /// Times and values of measured tables, by the names of their signals.
 void copyMeasuredSignals(const std::vector<SignalSpec>& from, ModelSpec& model);
 
+/// Empties the tables whose file is there to be read again.
+void dropMeasuredSignals(ExperimentSpec& experiment);
+
 /// Whether any table of the excitation is given as `measured`.
 bool hasMeasuredSignals(const ExperimentSpec& experiment);
 

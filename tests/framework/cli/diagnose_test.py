@@ -153,6 +153,23 @@ class Diagnose(FolderTestCase):
         self.assertNotIn("model_mismatch", inferred["statuses"])
         self.assertIn("coulomb_x", inferred["parameters"])
 
+    def test_the_corrected_experiment_reads_what_was_measured_again(self):
+        times = [0.005 * i for i in range(1001)]
+        rows = "".join(f"{t},{2 * math.sin(9 * t + 2 * t * t)}\n" for t in times)
+        (self.folder / "force.csv").write_text("t [s],F [N]\n" + rows)
+        chirp = CART.read_text().split("F: {unit: N, ")[1].split("}\n")[0]
+        file, mended = self.folder / "measured.yaml", self.folder / "mended.yaml"
+        file.write_text(CART.read_text().replace(chirp, "tables: [{measured: {file: force.csv, column: F, time: t}}]"))
+        recording = self.folder / "driven.csv"
+        result = call("simulate", file, "--noise", "--csv", recording, "parameters.k=95", FRICTION)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.diagnose(file, recording, "--accept", "coulomb.x", "--out", mended)
+        self.assertIn("force.csv", mended.read_text())
+        self.assertNotIn("values:", mended.read_text())
+        inferred = call("infer", mended, recording, "--json")
+        self.assertEqual(inferred.returncode, 0, inferred.stderr)
+        self.assertNotIn("model_mismatch", json.loads(inferred.stdout)["statuses"])
+
     def test_noise_of_unknown_size_is_that_of_the_fit(self):
         unknown = self.folder / "unknown.yaml"
         unknown.write_text(CART.read_text().replace("stddev: {x: 1e-4}", "stddev: {x: unknown}"))

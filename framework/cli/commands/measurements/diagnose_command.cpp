@@ -5,10 +5,8 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/own_file.hpp"
-#include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/study/diagnosis/diagnosis_page.hpp"
@@ -59,17 +57,6 @@ RecordedFeatures readArguments(const DiagnoseArguments& arguments, const Measure
              : readOfTrials(arguments, experiment);
 }
 
-/// Tolerances that the file does not give follow the noise anew: the terms' parameters may need smaller ones.
-void freeTolerances(SimulationSpec& simulation) {
-  const SimulationSpec defaults;
-  if (simulation.relative_tolerance.where.line == 0) {
-    simulation.relative_tolerance = defaults.relative_tolerance;
-  }
-  if (simulation.absolute_tolerance.where.line == 0) {
-    simulation.absolute_tolerance = defaults.absolute_tolerance;
-  }
-}
-
 }  // namespace
 
 void diagnose(const DiagnoseArguments& arguments) {
@@ -84,16 +71,14 @@ void diagnose(const DiagnoseArguments& arguments) {
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
-  Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
+  const Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
   const std::string name =
       fmt::format("{}", fmt::join(arguments.trials.empty() ? arguments.files : arguments.trials, ", "));
   std::cout << (arguments.json  ? makeDiagnosisJson(diagnosis, name) + "\n"
                 : arguments.csv ? makeDiagnosisCsv(diagnosis, name)
                                 : makeDiagnosisTable(diagnosis, name));
   if (!arguments.out.empty()) {
-    requireSharedSystem(diagnosis.corrected);
-    changeTrials(diagnosis.corrected, [](ExperimentSpec& one) { freeTolerances(one.model.simulation); });
-    writeTextFile(arguments.out, writeExperiment(diagnosis.corrected));
+    writeTextFile(arguments.out, writeCorrected(diagnosis.corrected));
   }
   if (!arguments.page.empty()) {
     writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, reader.getExperiment(), recordings,
