@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <map>
 
@@ -19,22 +21,34 @@ void enlarge(const CoordinateSizes& by, std::vector<CoordinateSizes>& coordinate
   same->force = std::max(same->force, by.force);
 }
 
-/// Coordinates and own forces of all trials as large as in any.
+/// `to` is as large as `from`, each number of it.
+void enlarge(const std::vector<double>& from, std::vector<double>& to) {
+  for (std::size_t i = 0; i < std::min(from.size(), to.size()); ++i) {
+    to[i] = std::max(to[i], from[i]);
+  }
+}
+
+/// All as large as in any trial; signals and outputs, where they may not be the same ones, if there are as
+/// many.
 void shareSizes(std::vector<ModelSizes>& sizes) {
   ModelSizes largest = sizes.front();
   for (const ModelSizes& one : sizes) {
     for (const CoordinateSizes& coordinate : one.coordinates) {
       enlarge(coordinate, largest.coordinates);
     }
+    enlarge(one.signals, largest.signals);
+    enlarge(one.outputs, largest.outputs);
     for (std::size_t i = 0; i < largest.own_forces.size(); ++i) {
-      for (std::size_t k = 0; k < largest.own_forces[i].size(); ++k) {
-        largest.own_forces[i][k] = std::max(largest.own_forces[i][k], one.own_forces[i][k]);
-      }
+      enlarge(one.own_forces[i], largest.own_forces[i]);
     }
   }
   for (ModelSizes& one : sizes) {
     one.coordinates = largest.coordinates;
     one.own_forces = largest.own_forces;
+    if (one.signals.size() == largest.signals.size() && one.outputs.size() == largest.outputs.size()) {
+      one.signals = largest.signals;
+      one.outputs = largest.outputs;
+    }
   }
 }
 
@@ -65,8 +79,9 @@ std::vector<TermCandidate> listCandidates(const ExperimentSpec& experiment, cons
   const ModelSpec& model = experiment.model;
   std::vector<TermCandidate> candidates = listForceCandidates(sizes);
   for (const std::vector<TermCandidate>& more :
-       {listBodyCandidates(model, sizes), listOutputCandidates(model, sizes), listSignalCandidates(model),
-        listOwnCandidates(experiment.candidates, sizes), listMemoryCandidates(model, sizes)}) {
+       {listBodyCandidates(model, sizes), listOutputCandidates(model, sizes),
+        listSignalCandidates(model, sizes), listOwnCandidates(experiment.candidates, sizes),
+        listMemoryCandidates(model, sizes)}) {
     candidates.insert(candidates.end(), more.begin(), more.end());
   }
   return candidates;
@@ -79,6 +94,10 @@ void addScanned(const TermCandidate& candidate, double first, double factor, int
     candidates.push_back(candidate);
     candidates.back().own_scales.front().value = value;
   }
+}
+
+std::string writeBeyond(const std::string& value, const std::string& limit) {
+  return fmt::format("(max({0} - {1}, 0) + min({0} + {1}, 0))", value, limit);
 }
 
 std::string addState(ModelSpec& model, const std::string& name, const std::string& initial,

@@ -32,8 +32,8 @@ std::vector<std::string> listForces(const CandidateSpec& candidate) {
   return forces;
 }
 
-/// The model with each coordinate and its speed as outputs, then those of its own, then the forces of
-/// candidates.
+/// The model with each coordinate and its speed as outputs, then those of its own, its signals, and the
+/// forces of candidates.
 ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<ForcedCoordinate>& coordinates) {
   const ModelSpec& model = experiment.model;
   ModelSpec observed = model;
@@ -42,6 +42,9 @@ ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<Force
     observeMotion(coordinate, observed.outputs);
   }
   observed.outputs.insert(observed.outputs.end(), model.outputs.begin(), model.outputs.end());
+  for (const SignalSpec& signal : model.excitation) {
+    observeForce(signal.name.text, {signal.name.text, {}}, observed.outputs);
+  }
   for (const CandidateSpec& candidate : experiment.candidates) {
     for (const std::string& force : listForces(candidate)) {
       observeForce(candidate.name.text, {force, candidate.force.where}, observed.outputs);
@@ -117,6 +120,9 @@ ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& poin
   auto column = static_cast<Index>(2 * forced.size());
   for (std::size_t o = 0; o < model.outputs.size(); ++o) {
     sizes.outputs.push_back(outputs.col(column++).cwiseAbs().maxCoeff());
+  }
+  for (std::size_t s = 0; s < model.excitation.size(); ++s) {
+    sizes.signals.push_back(outputs.col(column++).cwiseAbs().maxCoeff());
   }
   for (const CandidateSpec& candidate : experiment.candidates) {
     sizes.own_forces.emplace_back();

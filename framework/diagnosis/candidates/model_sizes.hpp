@@ -26,6 +26,7 @@ struct ModelSizes {
   double mass = 0.0, moment = 0.0;  ///< of all bodies together
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
   std::vector<double> outputs;  ///< max |output|
+  std::vector<double> signals;  ///< max |signal|
   /// rms of each of the experiment's candidates with a coefficient of 1, for each value of its scale
   std::vector<std::vector<double>> own_forces;
 };

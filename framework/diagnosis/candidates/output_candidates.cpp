@@ -111,6 +111,20 @@ void addLag(std::size_t index, const std::string& name, const OutputText& text, 
   addScanned(lag, shortest, 4.0, 3, candidates);
 }
 
+/// A sensor that shows nothing beyond a limit, where c is 1.
+void addClipping(std::size_t index, const std::string& name, const OutputText& text, double largest,
+                 std::vector<TermCandidate>& candidates) {
+  TermCandidate clipping =
+      makeAdded(index, "clipping." + name,
+                fmt::format("output {} limited on either side, by the share c", name), "1", 1.0, "");
+  clipping.own_scales = {{"its limit", text.unit}};
+  clipping.add = [index, text](ModelSpec& changed, const std::string& coefficient,
+                               const std::vector<std::string>& scales) {
+    addToOutput(changed, index, fmt::format("-{}*{}", coefficient, writeBeyond(text.value, scales.front())));
+  };
+  addScanned(clipping, 0.55 * largest, 1.6, 2, candidates);
+}
+
 /// All outputs recorded by a clock that is fast by the share c: a later sample is a still later state.
 void addClock(const std::vector<OutputText>& texts, std::vector<TermCandidate>& candidates) {
   constexpr double kLargeDrift = 0.01;
@@ -147,7 +161,7 @@ void addCrossTalk(const ModelSpec& model, const std::vector<OutputText>& texts,
   }
 }
 
-/// Drift, delay and lag of an output that is a coordinate, a speed or an expression.
+/// Drift, clipping, delay and lag of an output that is a coordinate, a speed or an expression.
 void addOwnErrors(std::size_t index, const ModelSpec& model, const OutputText& text, double size,
                   std::vector<TermCandidate>& candidates) {
   constexpr double kLongDelay = 0.005, kShortestLag = 0.002;  // of the duration
@@ -155,6 +169,7 @@ void addOwnErrors(std::size_t index, const ModelSpec& model, const OutputText& t
   const double duration = model.simulation.duration;
   candidates.push_back(makeAdded(index, "drift." + name, fmt::format("drift of output {}, c t", name),
                                  makeRateUnit(text.unit), kLargeGain * size / duration, "t"));
+  addClipping(index, name, text, size, candidates);
   // of one output alone, a delay is that of all signals
   if (!text.rate.empty() && (model.outputs.size() > 1 || model.excitation.empty())) {
     candidates.push_back(makeDelay(index, name, text, kLongDelay * duration));

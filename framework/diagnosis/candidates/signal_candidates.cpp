@@ -5,6 +5,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/measured_signals.hpp"
+#include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 
 namespace twinmap {
@@ -32,6 +33,26 @@ void replaceSignal(ModelSpec& model, const std::string& signal, const std::strin
   for (NamedExpression& named : model.system.expressions) {
     replace(named.value);
   }
+}
+
+/// What acts in a signal's place: a named expression of it, which is the signal itself until terms are added.
+NamedExpression& updActing(ModelSpec& model, const std::string& signal) {
+  std::vector<NamedExpression>& all = model.system.expressions;
+  const std::string name = signal + "_acting";
+  const auto known = std::find_if(all.begin(), all.end(), [&](const NamedExpression& one) {
+    return one.name.text == name && one.name.where.line == 0;  // not one of the file
+  });
+  if (known != all.end()) {
+    return *known;
+  }
+  const std::string own = makeParameterName(model, name);
+  replaceSignal(model, signal, own);
+  return *all.insert(all.begin(), NamedExpression{{own, {}}, {signal, {}}});
+}
+
+/// Terms of the signal itself, so that texts grow by each term alone.
+void addToSignal(ModelSpec& model, const std::string& signal, const std::string& term) {
+  updActing(model, signal).value.text += " + " + term;
 }
 
 void delay(Expression& time, const std::string& by) {
@@ -88,7 +109,7 @@ void delaySignal(ModelSpec& model, std::size_t index, const std::string& by) {
       slope.tables.push_back(differentiate(table));
     }
   }
-  replaceSignal(model, name, fmt::format("({} - {}*{})", name, by, slope.name.text));
+  addToSignal(model, name, fmt::format("-{}*{}", by, slope.name.text));
   model.excitation.push_back(std::move(slope));
 }
 
@@ -107,7 +128,7 @@ TermCandidate makeGain(const std::string& name) {
   gain.meaning = fmt::format("signal {}, larger by the factor 1 + c", name);
   gain.size = kLarge;
   gain.add = [name](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
-    replaceSignal(changed, name, fmt::format("({0} + {1}*{0})", name, coefficient));
+    addToSignal(changed, name, coefficient + "*" + name);
   };
   return gain;
 }
@@ -147,15 +168,70 @@ void addLag(const SignalSpec& signal, double shortest, std::vector<TermCandidate
   lag.own_scales = {{"time constant of the filter", "s"}};
   lag.add = [name, first = toText(calcFirstValue(signal)), unit = signal.unit](
                 ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>& scales) {
+    updActing(changed, name);  // before there is a state that the signal itself moves
     const std::string state = addState(changed, coefficient + "_lag", first, unit);
-    replaceSignal(changed, name, fmt::format("({0} + {1}*({2} - {0}))", name, coefficient, state));
-    for (StateSpec& one : changed.system.states) {
-      if (one.name.text == state) {
-        one.derivative.text = fmt::format("({} - {})/{}", name, state, scales.front());
-      }
-    }
+    changed.system.states.back().derivative.text = fmt::format("({} - {})/{}", name, state, scales.front());
+    addToSignal(changed, name, fmt::format("{}*({} - {})", coefficient, state, name));
   };
   addScanned(lag, shortest, 4.0, 3, candidates);
+}
+
+/// What is around 0, or beyond a limit, is missing: all of it where c is 1.
+void addLimits(const SignalSpec& signal, double largest, std::vector<TermCandidate>& candidates) {
+  const std::string name = signal.name.text;
+  const auto make = [&](const char* kind, const char* meaning, const char* scale) {
+    TermCandidate candidate;
+    candidate.term = fmt::format("{}.{}", kind, name);
+    candidate.meaning = fmt::format("signal {} {}, by the share c", name, meaning);
+    candidate.unit = "1";
+    candidate.own_scales = {{scale, signal.unit}};
+    return candidate;
+  };
+  TermCandidate dead_zone = make("dead_zone", "without effect around 0", "where it begins to act");
+  dead_zone.add = [name](ModelSpec& changed, const std::string& coefficient,
+                         const std::vector<std::string>& scales) {
+    addToSignal(changed, name,
+                fmt::format("{}*({} - {})", coefficient, writeBeyond(name, scales.front()), name));
+  };
+  addScanned(dead_zone, 0.1 * largest, 4.0, 2, candidates);
+  TermCandidate clipping = make("clipping", "limited on either side", "its limit");
+  clipping.add = [name](ModelSpec& changed, const std::string& coefficient,
+                        const std::vector<std::string>& scales) {
+    addToSignal(changed, name, fmt::format("-{}*{}", coefficient, writeBeyond(name, scales.front())));
+  };
+  addScanned(clipping, 0.55 * largest, 1.6, 2, candidates);
+}
+
+/// Of rectangles alone, whatever is around 0 or beyond a limit is a gain.
+bool canBeLimited(const SignalSpec& signal) {
+  return !signal.tables.empty() || !signal.sines.empty() || !signal.chirps.empty() ||
+         !signal.multisines.empty();
+}
+
+bool canBeHeld(const SignalSpec& signal) {
+  const bool has_tables_alone = !signal.tables.empty() && signal.pulses.empty() && signal.sines.empty() &&
+                                signal.chirps.empty() && signal.multisines.empty();
+  return has_tables_alone && std::all_of(signal.tables.begin(), signal.tables.end(), [](const TableSpec& t) {
+           return t.interpolation != TableInterpolation::kHold;
+         });
+}
+
+TermCandidate makeHold(std::size_t index, const std::string& name) {
+  TermCandidate hold;
+  hold.term = "hold." + name;
+  hold.meaning = fmt::format("signal {} constant between its samples, by the share c", name);
+  hold.unit = "1";
+  hold.add = [index, name](ModelSpec& changed, const std::string& coefficient,
+                           const std::vector<std::string>&) {
+    SignalSpec held = changed.excitation[index];
+    held.name.text = name + "_held";
+    for (TableSpec& table : held.tables) {
+      table.interpolation = TableInterpolation::kHold;
+    }
+    addToSignal(changed, name, fmt::format("{}*({} - {})", coefficient, held.name.text, name));
+    changed.excitation.push_back(std::move(held));
+  };
+  return hold;
 }
 
 }  // namespace
@@ -183,7 +259,7 @@ std::string replaceName(const std::string& text, const std::string& name, const 
   return replaced;
 }
 
-std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model) {
+std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model, const ModelSizes& sizes) {
   constexpr double kLongDelay = 0.005, kShortestLag = 0.002;  // of the duration
   const double duration = model.simulation.duration;
   std::vector<TermCandidate> candidates;
@@ -194,6 +270,12 @@ std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model) {
       candidates.push_back(makeDelay(i, signal.name.text, kLongDelay * duration));
     }
     addLag(signal, kShortestLag * duration, candidates);
+    if (sizes.signals[i] > 0.0 && canBeLimited(signal)) {
+      addLimits(signal, sizes.signals[i], candidates);
+    }
+    if (canBeHeld(signal)) {
+      candidates.push_back(makeHold(i, signal.name.text));
+    }
   }
   return candidates;
 }

@@ -21,11 +21,12 @@ std::vector<TermCandidate> listMemoryCandidates(const ModelSpec& model, const Mo
 /// Mass, centre of mass and moments of inertia of each body; gravity in another direction.
 std::vector<TermCandidate> listBodyCandidates(const ModelSpec& model, const ModelSizes& sizes);
 
-/// Offset, gain, drift, delay, lag and cross-talk of outputs, and the clock by which they are recorded.
+/// Offset, gain, drift, delay, lag, clipping and cross-talk of outputs, and the clock by which they are
+/// recorded.
 std::vector<TermCandidate> listOutputCandidates(const ModelSpec& model, const ModelSizes& sizes);
 
-/// Gain, delay and lag of each signal.
-std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model);
+/// Gain, delay, lag, dead zone and clipping of each signal; of tables, that their values are held.
+std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model, const ModelSizes& sizes);
 
 /// Those that the experiment names (CandidateSpec).
 std::vector<TermCandidate> listOwnCandidates(const std::vector<CandidateSpec>& candidates,
@@ -41,6 +42,9 @@ std::vector<TermCandidate> listTrialCandidates(const ExperimentSpec& combined, s
 /// Once for each value of its first own scale, from `first` on, each `factor` times the one before.
 void addScanned(const TermCandidate& candidate, double first, double factor, int count,
                 std::vector<TermCandidate>& candidates);
+
+/// What of a value lies beyond -limit ... limit, as an expression.
+std::string writeBeyond(const std::string& value, const std::string& limit);
 
 /// Adds a state to a model, the last one, whose rate is still 0; returns its name, `name` where that is not
 /// taken.

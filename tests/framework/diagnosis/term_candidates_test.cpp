@@ -1,5 +1,6 @@
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,7 +60,7 @@ TEST(Candidates, MakeExperimentsThatPassTheChecks) {
 TEST(Candidates, CoverCoordinatesBodiesSensorsAndSignals) {
   const std::vector<TermCandidate> candidates = listAtCenter(loadExperiment(kTable1));
   for (const char* term : {"drag.y", "coulomb.theta", "stop.y", "mass.beam2", "center_y.beam2", "tilt.x",
-                           "offset.theta", "gain.y", "gain.F", "delay.M"}) {
+                           "offset.theta", "gain.y", "gain.F", "delay.M", "clipping.y"}) {
     find(candidates, term);
   }
 }
@@ -71,6 +72,16 @@ TEST(Candidates, ChangeSignalsInNamedExpressionsToo) {
   const ExperimentSpec changed = addTerm(servo, find(candidates, "gain.r"), 0.1).experiment;
   EXPECT_NE(changed.model.system.expressions.front().value.text,
             servo.model.system.expressions.front().value.text);
+}
+
+VectorXd simulateAtCenter(const ExperimentSpec& experiment) {
+  const ResponseLayout layout = makeLayout(experiment);
+  MatrixXd response(layout.getRowCount(), 1);
+  SampleStatus status;
+  makeTrustedSimulator(experiment.model, layout.times)
+      ->simulate(calcBoxCenter(experiment.model.parameters), response, &status);
+  EXPECT_TRUE(status.ok) << status.reason;
+  return response.col(0);
 }
 
 /// The response of the cart with a term of some size, its own scale as it is scanned.
@@ -92,6 +103,37 @@ VectorXd simulateWith(const ExperimentSpec& experiment, const TermCandidate& can
   return response.col(0);
 }
 
+// With c = 1 the term is what it says.
+TEST(Candidates, HoldAndLimitSignalsAndOutputs) {
+  const auto load = [&](const char* more) {
+    return loadExperiment(kCart,
+                          {fmt::format("excitation={{F: {{unit: N, tables: [{{times: [0, 0.7, 2, 3, 5], "
+                                       "values: [0, 2, -2, 1, 0]{}}}]}}}}",
+                                       more)});
+  };
+  const ExperimentSpec bent = load("");
+  const std::vector<TermCandidate> candidates = listAtCenter(bent);
+  const VectorXd held = simulateAtCenter(load(", interpolation: hold"));
+  EXPECT_LT((simulateWith(bent, find(candidates, "hold.F"), 1.0) - held).norm(), 1e-5 * held.norm());
+
+  ExperimentSpec limited = bent;
+  const TermCandidate& clipping = find(candidates, "clipping.F");
+  EXPECT_NEAR(clipping.own_scales.front().value, 1.1, 1e-9);
+  limited.model.system.elements.get<ForceLaw>().front().force.text = "min(max(F, -1.1), 1.1) - k3*x^3";
+  const VectorXd clipped = simulateAtCenter(limited);
+  EXPECT_LT((simulateWith(bent, clipping, 1.0) - clipped).norm(), 1e-5 * clipped.norm());
+  limited.model.system.elements.get<ForceLaw>().front().force.text =
+      "max(F - 0.2, 0) + min(F + 0.2, 0) - k3*x^3";
+  const VectorXd dead = simulateAtCenter(limited);
+  EXPECT_LT((simulateWith(bent, find(candidates, "dead_zone.F"), 1.0) - dead).norm(), 1e-5 * dead.norm());
+
+  const TermCandidate& sensor = find(candidates, "clipping.x");
+  const VectorXd motion = simulateAtCenter(bent);
+  const double limit = sensor.own_scales.front().value;
+  EXPECT_LT((simulateWith(bent, sensor, 1.0) - motion.cwiseMin(limit).cwiseMax(-limit)).norm(),
+            1e-5 * motion.norm());
+}
+
 // Exact derivatives at 0 against differences of simulations, each with the term alone.
 TEST(Candidates, HaveExactDerivatives) {
   const ExperimentSpec experiment =
@@ -107,7 +149,7 @@ TEST(Candidates, HaveExactDerivatives) {
   ASSERT_TRUE(status.ok) << status.reason;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const VectorXd exact = derivatives.col(3 + static_cast<Index>(i));
-    const double step = 1e-4 * candidates[i].size;
+    const double step = 1e-3 * candidates[i].size;  // a hundred times what kinks leave of the tolerance
     const VectorXd differences =
         (simulateWith(experiment, candidates[i], step) - simulateWith(experiment, candidates[i], -step)) /
         (2.0 * step);
