@@ -157,5 +157,29 @@ TEST(Candidates, HaveExactDerivatives) {
   }
 }
 
+// Where a signal begins and ends within the simulation, and its values jump there.
+TEST(Candidates, DelaysHaveExactDerivativesAwayFromZero) {
+  const ExperimentSpec experiment = loadExperiment(
+      kCart, {"simulation.relative_tolerance=1e-10", "simulation.absolute_tolerance=1e-13",
+              "excitation.F.sines=[{amplitude: 1, frequency: 1.3, phase: 1, start: 0.4, end: 3}]"});
+  const TermCandidate late = find(listAtCenter(experiment), "delay.F");
+  const AugmentedExperiment augmented = addTerm(experiment, late, 1e3 * late.size);
+  const ResponseLayout layout = makeLayout(experiment);
+  VectorXd point = calcBoxCenter(augmented.experiment.model.parameters);
+  for (const double delay : {0.0123, 0.003, -0.0071}) {
+    point[3] = delay;
+    MatrixXd response(layout.getRowCount(), 1), derivatives;
+    SampleStatus status;
+    makeTrustedSimulator(augmented.experiment.model, layout.times)
+        ->simulateWithDerivatives(point, response, derivatives, &status);
+    ASSERT_TRUE(status.ok) << status.reason;
+    constexpr double kStep = 1e-6;
+    const VectorXd differences =
+        (simulateWith(experiment, late, delay + kStep) - simulateWith(experiment, late, delay - kStep)) /
+        (2.0 * kStep);
+    EXPECT_LT((derivatives.col(3) - differences).norm(), 1e-4 * differences.norm()) << delay;
+  }
+}
+
 }  // namespace
 }  // namespace twinmap
