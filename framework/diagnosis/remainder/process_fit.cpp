@@ -33,6 +33,8 @@ struct IndependentParts {
   VectorXd variances;   ///< k, of what a process of unit variance does
   MatrixXd projected;   ///< k x (1 + u), of [residual, jacobian]
   MatrixXd directions;  ///< k x k, of the values at the knots: those of unit variance are independent
+  MatrixXd rest;        ///< (1 + u) x (1 + u), squares of [residual, jacobian] that no part reaches
+  VectorXd inverses;    ///< k: 1 / variances; 0 of parts that do too little to have a direction
 };
 
 IndependentParts splitProcess(const ProcessEffect& effect, const LinearizedRecordings& linear,
@@ -40,11 +42,18 @@ IndependentParts splitProcess(const ProcessEffect& effect, const LinearizedRecor
   const MatrixXd lower = linalg::calcCholesky(calcCorrelation(effect.knots, length)).lower;
   const MatrixXd responses = effect.responses * lower.triangularView<Eigen::Lower>();
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(responses.transpose() * responses);
-  return {eigen.values.cwiseMax(0.0), eigen.vectors.transpose() * (responses.transpose() * joinData(linear)),
-          lower.triangularView<Eigen::Lower>() * eigen.vectors};
+  constexpr double kLeast = 1e-8;  // of the largest: the root of what products of doubles resolve
+  const double least = kLeast * eigen.values.maxCoeff();
+  const VectorXd inverses = (eigen.values.array() > least).select(eigen.values.cwiseInverse(), 0.0);
+  MatrixXd data = joinData(linear);
+  const MatrixXd projected = eigen.vectors.transpose() * (responses.transpose() * data);
+  data -= responses * (eigen.vectors * (inverses.asDiagonal() * projected));
+  return {eigen.values.cwiseMax(0.0), projected, lower.triangularView<Eigen::Lower>() * eigen.vectors,
+          data.transpose() * data, inverses};
 }
 
-/// Sums of one quadratic form [r, J]' V^-1 [r, J] over recordings, in the places of all unknown parameters.
+/// Sums of one quadratic form [r, J]' V^-1 [r, J] over recordings, in the places of all unknown parameters: a
+/// sum of squares, so that a parameter that hardly acts does not get information from rounding.
 struct Whitened {
   double residual = 0.0, log_determinant = 0.0;
   VectorXd gradient;
@@ -53,11 +62,8 @@ struct Whitened {
 
 void addRecording(const LinearizedRecordings& linear, const IndependentParts& parts, double variance,
                   const std::vector<Index>& places, Whitened& sum) {
-  const MatrixXd data = joinData(linear);
-  // V^-1 = I - H (1/s^2 + H'H)^-1 H'
-  const VectorXd weights = (variance / (1.0 + variance * parts.variances.array())).matrix();
-  const MatrixXd inner =
-      data.transpose() * data - parts.projected.transpose() * weights.asDiagonal() * parts.projected;
+  const VectorXd weights = (parts.inverses.array() / (1.0 + variance * parts.variances.array())).matrix();
+  const MatrixXd inner = parts.rest + parts.projected.transpose() * weights.asDiagonal() * parts.projected;
   const Index u = linear.jacobian.cols();
   sum.residual += inner(0, 0);
   sum.log_determinant += (1.0 + variance * parts.variances.array()).log().sum();
@@ -85,9 +91,10 @@ class ProcessModel {
     for (std::size_t k = 0; k < parts_.size(); ++k) {
       addRecording(problem_.recordings[k].linear, parts_[k], variance, places_[k], sum);
       for (std::size_t i = 0; i < places_[k].size(); ++i) {
+        const bool is_counted = k > 0 && static_cast<Index>(i) < problem_.shared;
         const double half = problem_.recordings[k].half_widths[static_cast<Index>(i)];
-        sum.information(places_[k][i], places_[k][i]) =
-            std::max(sum.information(places_[k][i], places_[k][i]), kHalfWidthInformation / (half * half));
+        sum.information(places_[k][i], places_[k][i]) +=
+            is_counted ? 0.0 : kHalfWidthInformation / (half * half);
       }
     }
     return sum;

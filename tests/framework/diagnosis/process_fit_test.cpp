@@ -80,5 +80,26 @@ TEST(SearchProcess, FindsTheSizeOfAProcessAndNoneWhereThereIsNone) {
   EXPECT_LT(searchProcess(problem, {0.1, 0.3, 1.0}).log_evidence, 0.0);
 }
 
+// Two springs of which only the sum acts: what one parameter alone says.
+TEST(SearchProcess, IsAsGoodWhereParametersActByTheirSumAlone) {
+  FittedRecording one = makeRecording(0.4);
+  one.linear.residual *= 0.05;
+  for (Index i = 0; i < kResiduals; ++i) {
+    one.linear.residual[i] += i % 7 == 3 ? 1.0 : std::cos(2.9 * static_cast<double>(i * i));
+  }
+  FittedRecording both = one;
+  both.half_widths = VectorXd::Constant(3, 10.0);
+  one.half_widths = Eigen::Vector2d(10.0 * std::sqrt(2.0), 10.0);
+  both.linear.jacobian.resize(kResiduals, 3);
+  both.linear.jacobian << 1e3 * one.linear.jacobian.col(0), 1e3 * one.linear.jacobian.col(0),
+      one.linear.jacobian.col(1);
+  one.linear.jacobian.col(0) *= 1e3;
+  const std::vector<FittedRecording> alone{one}, together{both};
+  const std::vector<double> lengths{0.1, 0.3, 1.0};
+  const BestProcess expected = searchProcess({alone, 0, 2}, lengths);
+  const BestProcess best = searchProcess({together, 0, 3}, lengths);
+  EXPECT_NEAR(best.log_evidence, expected.log_evidence, 1e-3 * (1.0 + std::abs(expected.log_evidence)));
+}
+
 }  // namespace
 }  // namespace twinmap
