@@ -117,7 +117,7 @@ void addClipping(std::size_t index, const std::string& name, const OutputText& t
   TermCandidate clipping =
       makeAdded(index, "clipping." + name,
                 fmt::format("output {} limited on either side, by the share c", name), "1", 1.0, "");
-  clipping.own_scales = {{"its limit", text.unit}};
+  clipping.own_scales = {{"its limit", text.unit, 0.0, kReachOfLimits}};
   clipping.add = [index, text](ModelSpec& changed, const std::string& coefficient,
                                const std::vector<std::string>& scales) {
     addToOutput(changed, index, fmt::format("-{}*{}", coefficient, writeBeyond(text.value, scales.front())));

@@ -199,6 +199,7 @@ void addLimits(const SignalSpec& signal, double largest, std::vector<TermCandida
                         const std::vector<std::string>& scales) {
     addToSignal(changed, name, fmt::format("-{}*{}", coefficient, writeBeyond(name, scales.front())));
   };
+  clipping.own_scales.front().reach = kReachOfLimits;
   addScanned(clipping, 0.55 * largest, 1.6, 2, candidates);
 }
 
