@@ -1,8 +1,12 @@
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/base/text/source_location.hpp"
 
 namespace twinmap {
@@ -26,9 +30,18 @@ double calcMeanSquare(const WhitenedResidual& fit, const std::vector<std::string
 
 }  // namespace
 
+std::vector<std::string> listUnknownNoise(const NoiseSpec& noise) {
+  std::vector<std::string> outputs;
+  for (const OutputNoiseSpec& one : noise.stddev) {
+    if (one.stddev.unknown) {
+      outputs.push_back(one.name.text);
+    }
+  }
+  return outputs;
+}
+
 bool hasUnknownNoise(const NoiseSpec& noise) {
-  return std::any_of(noise.stddev.begin(), noise.stddev.end(),
-                     [](const OutputNoiseSpec& one) { return one.stddev.unknown; });
+  return !listUnknownNoise(noise).empty();
 }
 
 void requireKnownNoise(const ExperimentSpec& experiment, const std::string& question) {
@@ -52,6 +65,28 @@ NoiseSpec sizeNoise(const NoiseSpec& stated, const WhitenedResidual& fit,
     }
   }
   return sized;
+}
+
+std::string describeSizes(const NoiseSpec& stated, const NoiseSpec& sized) {
+  std::string text;
+  for (std::size_t i = 0; i < stated.stddev.size(); ++i) {
+    if (stated.stddev[i].stddev.unknown) {
+      text +=
+          fmt::format("{}{} ({})", text.empty() ? "" : ", ",
+                      toShortText(sized.stddev[i].stddev, 3), stated.stddev[i].name.text);
+    }
+  }
+  return text;
+}
+
+std::size_t findLeastNoise(const std::vector<NoiseSpec>& sized) {
+  std::vector<double> sizes;  // logarithms
+  for (const NoiseSpec& noise : sized) {
+    sizes.push_back(std::accumulate(
+        noise.stddev.begin(), noise.stddev.end(), 0.0,
+        [](double sum, const OutputNoiseSpec& one) { return sum + std::log(one.stddev.value); }));
+  }
+  return static_cast<std::size_t>(std::min_element(sizes.begin(), sizes.end()) - sizes.begin());
 }
 
 void copyNoise(const ExperimentSpec& from, ExperimentSpec& to) {

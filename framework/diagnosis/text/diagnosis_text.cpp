@@ -7,6 +7,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
+#include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/score_test.hpp"
 
 namespace twinmap {
@@ -74,16 +75,8 @@ std::string describeFit(const ExplainedFit& fit) {
 }
 
 std::string describeNoise(const Diagnosis& diagnosis) {
-  std::string text;
-  const std::vector<OutputNoiseSpec>& stated = diagnosis.corrected.noise.stddev;
-  for (std::size_t i = 0; i < stated.size(); ++i) {
-    if (stated[i].stddev.unknown) {
-      text +=
-          fmt::format("{}{} ({})", text.empty() ? "Noise as the residual has it: sd " : ", ",
-                      toShortText(diagnosis.noise.stddev[i].stddev, kStddevFigures + 1), stated[i].name.text);
-    }
-  }
-  return text;
+  const std::string sizes = describeSizes(diagnosis.corrected.noise, diagnosis.noise);
+  return sizes.empty() ? "" : "Noise as the residual has it: sd " + sizes;
 }
 
 std::string describeBounds(const Diagnosis& diagnosis) {

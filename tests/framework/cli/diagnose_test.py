@@ -177,6 +177,15 @@ class Diagnose(FolderTestCase):
         self.assertEqual(call("validate", unknown, self.sound, "--against", again).returncode, 0)
         rubbing = call("validate", unknown, self.sound, "--against", self.rubbing)
         self.assertEqual(rubbing.returncode, 3, rubbing.stderr)
+        mended = self.folder / "unknown_mended.yaml"
+        self.diagnose(unknown, self.rubbing, "--out", mended)
+        chosen = call("select", unknown, mended, self.rubbing, "--json")
+        self.assertEqual(chosen.returncode, 0, chosen.stderr)
+        result = json.loads(chosen.stdout)
+        self.assertEqual(result["structures"][0]["file"], str(mended))
+        self.assertAlmostEqual(result["noise"]["x"], 1e-4, delta=2e-5)
+        self.assertIn(f"Noise as {mended} leaves it", call("select", unknown, mended, self.rubbing).stdout)
+        self.assertIn("differ in the outputs", call("select", CART, mended, self.rubbing).stderr)
 
     def test_says_what_a_test_is_blind_to(self):
         spots = {spot["term"]: spot for spot in json.loads(self.diagnose(CART, "--json"))["blind_spots"]}

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <iterator>
+#include <utility>
 
 #include "framework/base/json/json.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/diagnosis/held_out.hpp"
+#include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/structures.hpp"
 #include "framework/inference/inference_source.hpp"
 
@@ -17,7 +21,6 @@ namespace {
 struct Structure {
   std::string file;
   std::size_t parameters = 0;
-  Eigen::Index features = 0;
   StructureFit fit;
 };
 
@@ -26,31 +29,77 @@ bool isExperiment(const std::string& file) {
   return extension == ".yaml" || extension == ".yml";
 }
 
-Structure fitStructure(const std::string& file, const std::vector<std::string>& measurements,
-                       const SelectArguments& arguments) {
-  const InferenceSource source(file);
-  const MeasurementReader& reader = source.getReader();
-  const ExperimentSpec& experiment = reader.getExperiment();
-  const RecordedFeatures recordings =
-      readRecordings(reader, measurements, arguments.starts, parseKnownValues(arguments.known));
-  return {file, experiment.model.parameters.size(), reader.getExtractor().getFeatureCount(),
-          calcStructureFit(experiment, recordings,
-                           makePosteriorOptions(experiment, SimulatorPosteriorOptions{}.draws))};
+/// What a file and the recordings give, before any fit.
+struct Source {
+  std::string file;
+  InferenceSource source;
+  RecordedFeatures recordings;
+  ExperimentSpec experiment;
+
+  SimulatorPosteriorOptions makeOptions() const {
+    return makePosteriorOptions(experiment, SimulatorPosteriorOptions{}.draws);
+  }
+  Eigen::Index countFeatures() const { return source.getReader().getExtractor().getFeatureCount(); }
+};
+
+Source readSource(const std::string& file, const std::vector<std::string>& measurements,
+                  const SelectArguments& arguments) {
+  InferenceSource source(file);
+  RecordedFeatures recordings =
+      readRecordings(source.getReader(), measurements, arguments.starts, parseKnownValues(arguments.known));
+  ExperimentSpec experiment = source.getExperiment();
+  return {file, std::move(source), std::move(recordings), std::move(experiment)};
 }
 
-/// Evidence compares structures for the same data alone.
-void requireSameFeatures(const std::vector<Structure>& all) {
-  for (const Structure& one : all) {
-    if (one.features != all.front().features) {
+/// Evidence compares structures for the same data and noise alone.
+void requireComparable(const std::vector<Source>& all) {
+  const Source& first = all.front();
+  for (const Source& one : all) {
+    if (one.countFeatures() != first.countFeatures()) {
       throw ExperimentError(fmt::format(
           "{} has {} features, but {} has {}: structures are compared by the same features of the same "
           "recordings; give them the same 'features'",
-          one.file, one.features, all.front().file, all.front().features));
+          one.file, one.countFeatures(), first.file, first.countFeatures()));
+    }
+    if (listUnknownNoise(one.experiment.noise) != listUnknownNoise(first.experiment.noise)) {
+      throw ExperimentError(
+          fmt::format("{} and {} differ in the outputs whose noise is unknown: structures are compared by "
+                      "the same noise; "
+                      "give them the same 'noise.stddev'",
+                      one.file, first.file));
     }
   }
 }
 
-std::string makeStructureTable(const std::vector<Structure>& all, double best) {
+/// Noise whose size the files do not say.
+struct SizedNoise {
+  std::string file;  ///< whose fit leaves it; "" where the files say all
+  NoiseSpec stated, sized;
+};
+
+/// For all structures what the fit of the one leaves that leaves least.
+SizedNoise sizeNoise(std::vector<Source>& all) {
+  const NoiseSpec stated = all.front().experiment.noise;
+  if (!hasUnknownNoise(stated)) {
+    return {"", stated, stated};
+  }
+  std::vector<NoiseSpec> sized;
+  for (const Source& one : all) {
+    sized.push_back(sizeNoiseByFit(one.experiment, one.recordings, one.makeOptions()).noise);
+  }
+  const std::size_t least = findLeastNoise(sized);
+  for (Source& one : all) {
+    one.experiment.noise = sized[least];
+  }
+  return {all[least].file, stated, sized[least]};
+}
+
+Structure fitStructure(const Source& one) {
+  return {one.file, one.experiment.model.parameters.size(),
+          calcStructureFit(one.experiment, one.recordings, one.makeOptions())};
+}
+
+std::string makeStructureTable(const std::vector<Structure>& all, double best, const SizedNoise& noise) {
   std::vector<std::vector<std::string>> rows{
       {"structure", "parameters", "chi-square", "degrees", "log evidence", "held out: rms (noise sd)", "p"}};
   for (const Structure& one : all) {
@@ -60,11 +109,18 @@ std::string makeStructureTable(const std::vector<Structure>& all, double best) {
                     toShortText(fit.held_out_rms, 3),
                     fit.held_out_p < 1e-4 ? "< 0.0001" : toShortText(fit.held_out_p, 2)});
   }
-  return alignRows(rows, 1);
+  const std::string sizes = describeSizes(noise.stated, noise.sized);
+  return (sizes.empty() ? "" : fmt::format("Noise as {} leaves it: sd {}\n", noise.file, sizes)) +
+         alignRows(rows, 1);
 }
 
-std::string makeStructureJson(const std::vector<Structure>& all, double best) {
+std::string makeStructureJson(const std::vector<Structure>& all, double best, const SizedNoise& noise) {
   Json json{{"structures", Json::array()}};
+  for (std::size_t i = 0; i < noise.stated.stddev.size(); ++i) {
+    if (noise.stated.stddev[i].stddev.unknown) {
+      json["noise"][noise.stated.stddev[i].name.text] = noise.sized.stddev[i].stddev.value;
+    }
+  }
   for (const Structure& one : all) {
     const StructureFit& fit = one.fit;
     json["structures"].push_back({{"file", one.file},
@@ -88,16 +144,20 @@ void select(const SelectArguments& arguments) {
   if (experiments.size() < 2 || measurements.empty()) {
     throw ExperimentError("give two or more experiment files (YAML), then files of measurements");
   }
-  std::vector<Structure> all;
+  std::vector<Source> sources;
   for (const std::string& file : experiments) {
-    all.push_back(fitStructure(file, measurements, arguments));
+    sources.push_back(readSource(file, measurements, arguments));
   }
-  requireSameFeatures(all);
+  requireComparable(sources);
+  const SizedNoise noise = sizeNoise(sources);
+  std::vector<Structure> all;
+  std::transform(sources.begin(), sources.end(), std::back_inserter(all), fitStructure);
   std::stable_sort(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
     return a.fit.log_evidence > b.fit.log_evidence;
   });
   const double best = all.front().fit.log_evidence;
-  std::cout << (arguments.json ? makeStructureJson(all, best) + "\n" : makeStructureTable(all, best));
+  std::cout << (arguments.json ? makeStructureJson(all, best, noise) + "\n"
+                               : makeStructureTable(all, best, noise));
 }
 
 }  // namespace twinmap::cli
