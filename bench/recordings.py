@@ -249,8 +249,11 @@ def describe_sensors(spec, fault, recordings):
 
 
 def write_variant(twinmap, file, overrides, folder):
-    """The file with overrides, where its own folder's files are found."""
-    resolved = Path(file).parent / f".recordings-{folder.name}-{Path(file).name}"
+    """The file with overrides, beside links to the other files of its own folder."""
+    place = Path(tempfile.mkdtemp(dir=folder))
+    for other in Path(file).resolve().parent.iterdir():
+        (place / other.name).symlink_to(other)
+    resolved = place / f"variant-of-{Path(file).name}"
     resolved.write_text(call(twinmap, "check", "--full", file, *overrides))
     return resolved
 
@@ -281,27 +284,22 @@ def measure(twinmap, file, fault, arguments, limit):
     spec = yaml.safe_load(Path(file).read_text())
     with tempfile.TemporaryDirectory(prefix="recordings") as name:
         folder = Path(name)
-        made = [variant := write_variant(twinmap, file, describe_variant(spec, fault), folder)]
-        try:
-            spec = yaml.safe_load(variant.read_text())
-            simulated = [simulate(twinmap, variant, spec, fault, rng) for _ in range(arguments.tests)]
-            overrides = describe_sensors(spec, fault, [recording for recording, _ in simulated])
-            for recording, _ in simulated:
-                FAULTS[fault](recording, rng)
-            limits = [
-                None if fault in CLOCKS or i >= arguments.limits else limit.calc(variant, spec, fault, recording, truth)
-                for i, (recording, truth) in enumerate(simulated)
-            ]
-            (folder / "source").mkdir()
-            source = make_source(twinmap, variant, overrides, arguments.by_run, folder / "source")
-            made += [source] if source.is_file() else []
-            texts = "\n".join(recording.to_text() for recording, _ in simulated)
-            start = time.perf_counter()
-            lines = call(twinmap, "infer", source, "--follow", text=texts, may_fail=True).splitlines()
-            seconds = (time.perf_counter() - start) / len(simulated)
-        finally:
-            for path in made:
-                path.unlink()
+        variant = write_variant(twinmap, file, describe_variant(spec, fault), folder)
+        spec = yaml.safe_load(variant.read_text())
+        simulated = [simulate(twinmap, variant, spec, fault, rng) for _ in range(arguments.tests)]
+        overrides = describe_sensors(spec, fault, [recording for recording, _ in simulated])
+        for recording, _ in simulated:
+            FAULTS[fault](recording, rng)
+        limits = [
+            None if fault in CLOCKS or i >= arguments.limits else limit.calc(variant, spec, fault, recording, truth)
+            for i, (recording, truth) in enumerate(simulated)
+        ]
+        (folder / "source").mkdir()
+        source = make_source(twinmap, variant, overrides, arguments.by_run, folder / "source")
+        texts = "\n".join(recording.to_text() for recording, _ in simulated)
+        start = time.perf_counter()
+        lines = call(twinmap, "infer", source, "--follow", text=texts, may_fail=True).splitlines()
+        seconds = (time.perf_counter() - start) / len(simulated)
     truths = [{key.split(".")[1]: value for key, value in truth.items()} for _, truth in simulated]
     return list(zip(map(json.loads, lines), truths, limits)), seconds
 

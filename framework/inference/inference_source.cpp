@@ -2,6 +2,7 @@
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/data/measurement/table.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/direct_inference.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
@@ -41,6 +42,7 @@ std::unique_ptr<MeasurementInference> makeDirect(const MeasurementReader& reader
 }  // namespace
 
 InferenceSource::InferenceSource(const std::filesystem::path& run_or_experiment) {
+  refuseRecording(run_or_experiment);
   if (const std::filesystem::path experiment = findExperiment(run_or_experiment); !experiment.empty()) {
     reader_.emplace(followNoise(readExperimentWithSignals(loadExperimentTree(experiment.string()))));
   } else {

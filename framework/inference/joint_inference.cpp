@@ -30,8 +30,8 @@ namespace {
 constexpr int kOwnStarts = 8;
 /// Of a recording alone, where there are many parameters and each simulation is dear: their means and
 /// standard deviations are then known to a tenth of one, which is enough to show what each recording adds. So
-/// is a linear response about its best fit, unless a number of draws is asked for: draws that the simulator
-/// weighs would take as long as the rest.
+/// is a linear response about its best fit where that does (sampleLinearModel), unless a number of draws is
+/// asked for: draws that the simulator weighs would take as long as the rest.
 constexpr int kDrawsAlone = 128;
 /// Of all recordings of such a machine, unless given: half of what others take. With an effective sample size
 /// of half of these, means are known to a tenth of a standard deviation.
@@ -343,7 +343,6 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
     trials.back().simulator = simulators.back().get();
   }
   inferred.alone = inferAlone(recordings, trials);
-  inferred.alone_is_linear = options_.is_linear;
   for (const RecordingInference& one : inferred.alone) {
     inferred.simulations += one.posterior.simulations;
     if (!(one.posterior.degrees > 0.0)) {

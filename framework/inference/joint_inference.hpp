@@ -44,7 +44,6 @@ struct RecordingInference {
 /// What several recordings say about one machine.
 struct JointInference {
   std::vector<RecordingInference> alone;
-  bool alone_is_linear = false;               ///< SimulatorPosteriorOptions::is_linear of these
   SimulatorPosterior joint;                   ///< of the machine's parameters
   std::optional<Agreement> agreement;         ///< where all could be simulated
   std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first

@@ -5,8 +5,9 @@
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/commands.hpp"
-#include "framework/cli/commands/measurements/own_file.hpp"
 #include "framework/cli/parser/command_groups.hpp"
+#include "framework/cli/parser/shared_options.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap::cli {
 namespace {

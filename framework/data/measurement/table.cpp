@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <iterator>
 
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
@@ -77,6 +78,18 @@ std::string explainNoFile(const fs::path& path) {
 }
 
 }  // namespace
+
+void refuseRecording(const fs::path& run) {
+  constexpr const char* kExtensions[] = {".csv", ".txt", ".tsv", ".dat", ".mat"};
+  const std::string extension = getExtension(run);
+  if (fs::is_regular_file(run) &&
+      std::find(std::begin(kExtensions), std::end(kExtensions), extension) != std::end(kExtensions)) {
+    throw MeasurementError(
+        run.string() +
+        ": is a recording; first give the folder of a finished run, its maps.h5, or an experiment "
+        "file (YAML), then recordings");
+  }
+}
 
 Table readTable(const fs::path& path, const std::vector<std::string>& wanted, MissingCells missing) {
   if (!fs::is_regular_file(path) && !fs::is_fifo(path) && !fs::is_character_file(path)) {

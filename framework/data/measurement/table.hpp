@@ -58,6 +58,10 @@ constexpr std::size_t kMaxNumbers = 100'000'000;
 Table readTable(const std::filesystem::path& path, const std::vector<std::string>& wanted = {},
                 MissingCells missing = MissingCells::kRefuse);
 
+/// Throws MeasurementError where a file that is to be that of a run or an experiment is a recording, by the
+/// extension of its name: all of the above but .h5 and .hdf5, which maps have as well.
+void refuseRecording(const std::filesystem::path& run);
+
 /// Reads a text table in one pass, memory for the wanted columns only. Lines that are empty or comments (#)
 /// are left out. The first line names the columns, "enc1" or "enc1 [mm]", perhaps in quotes, or one below a
 /// block of remarks; a line of units may follow (findCsvLayout, which also finds what separates cells).

@@ -134,6 +134,34 @@ MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins) 
   return places;
 }
 
+/// Of many parameters, the best basin and those others that are minima. Searches of so many end early
+/// (choosePace), and creep along bent valleys: where they are given up looks like minima beside the one to
+/// which the valley leads. A few iterations more reach a minimum that is near; what does not arrive is none.
+std::vector<Basin> keepMinima(MisfitSurface& surface, std::vector<Basin> basins) {
+  constexpr int kIterations = 10;  // some three suffice near a minimum
+  if (surface.getDimensions() <= kManyUnknown || basins.size() < 2) {
+    return basins;
+  }
+  MatrixXd starts(surface.getDimensions(), static_cast<Index>(basins.size()) - 1);
+  for (Index k = 0; k < starts.cols(); ++k) {
+    starts.col(k) = basins[static_cast<std::size_t>(k) + 1].local.at;
+  }
+  SearchTeam team(surface, starts);
+  team.setKnown({basins.front()});
+  team.setPace({SearchPace().converged, kIterations, true});
+  team.run(kIterations);
+  std::vector<LocalSurface> ends{basins.front().local};
+  for (LocalSurface& end : team.listEnds()) {
+    if (end.misfit < ends.front().misfit || isMinimum(end)) {
+      ends.push_back(std::move(end));
+    }
+  }
+  const int searches = basins.front().searches;
+  basins = collectBasins(std::move(ends));
+  basins.front().searches += searches - 1;
+  return basins;
+}
+
 /// Ends of searches and the starts that are left.
 class BasinHunt {
  public:
@@ -220,6 +248,47 @@ class BasinHunt {
   BasinSearch found_;
 };
 
+/// All of findBasins() but for what keepMinima() says.
+BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,
+                     const BasinSearchOptions& options) {
+  const int most = options.starts * options.max_batches + options.probes;
+  const MatrixXd starts = makeStarts(surface.getDimensions(), seed, most);
+  BasinHunt hunt(surface, options.from_prior ? surface.spreadAsPrior(starts) : starts, options);
+  MatrixXd scouts(surface.getDimensions(), options.scouts + given.cols());
+  scouts << hunt.takeStarts(options.scouts), given;
+  hunt.search(scouts);
+  while (hunt.isExplained() && !hunt.isConfirmed() && hunt.countTaken() < options.starts) {
+    hunt.search(hunt.takeStarts(std::clamp(options.scouts, 1, options.starts - hunt.countTaken())));
+  }
+  if (hunt.isExplained() && hunt.isConfirmed()) {
+    hunt.probe();
+    if (hunt.isConfirmed()) {
+      hunt.searchFloors();
+      return hunt.getFound();
+    }
+  }
+  if (!hunt.isExplained() && hunt.isSettled(kSettledScouts)) {
+    return hunt.getFound();
+  }
+  MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
+  for (int batch = 0; batch < options.max_batches; ++batch) {
+    const MatrixXd next =
+        hunt.takeStarts(again.cols() > 0 ? options.starts - options.scouts : options.starts);
+    hunt.search(next);
+    if (!hunt.isExplained() && surface.countWindows() > 1) {
+      MatrixXd all(next.rows(), next.cols() + again.cols());
+      all << next, again;
+      hunt.searchWindows(all);
+    }
+    again.resize(Eigen::NoChange, 0);
+    if (hunt.getFound().basins.empty() || hunt.isConfirmed() || hunt.isSettled(kSettledBatches)) {
+      break;
+    }
+  }
+  hunt.searchFloors();
+  return hunt.getFound();
+}
+
 }  // namespace
 
 MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
@@ -265,42 +334,9 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
 
 BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,
                        const BasinSearchOptions& options) {
-  const int most = options.starts * options.max_batches + options.probes;
-  const MatrixXd starts = makeStarts(surface.getDimensions(), seed, most);
-  BasinHunt hunt(surface, options.from_prior ? surface.spreadAsPrior(starts) : starts, options);
-  MatrixXd scouts(surface.getDimensions(), options.scouts + given.cols());
-  scouts << hunt.takeStarts(options.scouts), given;
-  hunt.search(scouts);
-  while (hunt.isExplained() && !hunt.isConfirmed() && hunt.countTaken() < options.starts) {
-    hunt.search(hunt.takeStarts(std::clamp(options.scouts, 1, options.starts - hunt.countTaken())));
-  }
-  if (hunt.isExplained() && hunt.isConfirmed()) {
-    hunt.probe();
-    if (hunt.isConfirmed()) {
-      hunt.searchFloors();
-      return hunt.getFound();
-    }
-  }
-  if (!hunt.isExplained() && hunt.isSettled(kSettledScouts)) {
-    return hunt.getFound();
-  }
-  MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
-  for (int batch = 0; batch < options.max_batches; ++batch) {
-    const MatrixXd next =
-        hunt.takeStarts(again.cols() > 0 ? options.starts - options.scouts : options.starts);
-    hunt.search(next);
-    if (!hunt.isExplained() && surface.countWindows() > 1) {
-      MatrixXd all(next.rows(), next.cols() + again.cols());
-      all << next, again;
-      hunt.searchWindows(all);
-    }
-    again.resize(Eigen::NoChange, 0);
-    if (hunt.getFound().basins.empty() || hunt.isConfirmed() || hunt.isSettled(kSettledBatches)) {
-      break;
-    }
-  }
-  hunt.searchFloors();
-  return hunt.getFound();
+  BasinSearch found = findEnds(surface, given, seed, options);
+  found.basins = keepMinima(surface, std::move(found.basins));
+  return found;
 }
 
 }  // namespace twinmap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +29,11 @@ bool mayBend(const PosteriorProblem& problem);
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                          bool may_bend, const PosteriorDrawOptions& options);
 
-/// As if the response were linear about the best basin: no simulation.
-Sampling sampleLinearModel(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                           const PosteriorDrawOptions& options);
+/// As if the response were linear about the best basin; none where responses that are linear about some of
+/// these draws say otherwise (calcDisplacements). Those of a best fit that noise does not explain are not
+/// asked: it is not to be believed anyway. Cost: eight simulations with derivatives.
+std::optional<Sampling> sampleLinearModel(const PosteriorProblem& problem, const BasinSearch& found,
+                                          ProblemSurface& whole, bool is_explained,
+                                          const PosteriorDrawOptions& options);
 
 }  // namespace twinmap

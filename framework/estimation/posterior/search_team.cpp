@@ -20,8 +20,6 @@ constexpr double kDampings[] = {0.01, 1.0, 30.0};
 constexpr double kFirstDamping = 1e-2, kMinDamping = 1e-9, kMaxDamping = 1e8, kRaise = 100.0;
 constexpr double kHeldLinear = 0.75;      // of the gain that the linear model says
 constexpr double kLongestStep = 0.5;      // half of a coordinate's bounds
-constexpr double kConvergedGain = 0.01;   // of chi-square: a tenth of a standard deviation
-constexpr double kGainOfMany = 1.0;       // of many parameters, whose chi-square varies by some ten
 constexpr double kFirstDiagonal = 1e-12;  // of the largest: what the response does not depend on stays
 constexpr double kFarAbove = 50.0;        // of the best chi-square: e^-25 of its density
 
@@ -107,8 +105,16 @@ double calcLinearGain(const LocalSurface& local, const VectorXd& step) {
 
 }  // namespace
 
+SearchPace choosePace(Index dimensions) {
+  return dimensions > kManyUnknown ? SearchPace{1.0, 4, true} : SearchPace{};
+}
+
+bool isMinimum(const LocalSurface& local) {
+  return predictGain(local, {}) <= SearchPace().converged;
+}
+
 SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const MatrixXd& held)
-    : surface_(surface) {
+    : surface_(surface), pace_(choosePace(surface.getDimensions())) {
   std::vector<LocalSurface> locals = surface.linearize(starts);
   for (std::size_t i = 0; i < locals.size(); ++i) {
     const bool simulated = locals[i].simulated;
@@ -119,9 +125,8 @@ SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const Mat
 }
 
 void SearchTeam::run(int max_iterations) {
-  // By then whatever is near a minimum has come down to it; what must be better than a known basin, sooner.
-  // Of many parameters an iteration is dear, and the response is nearly linear where their priors leave them.
-  const int first_judged = !known_.empty() ? 3 : surface_.getDimensions() > kManyUnknown ? 4 : 5;
+  constexpr int kJudgedAgainstKnown = 3;  // what must be better than a known basin, sooner
+  const int first_judged = known_.empty() ? pace_.first_judged : kJudgedAgainstKnown;
   for (int i = 1; i <= max_iterations && improve(); ++i) {
     if (i == first_judged || i == 2 * first_judged) {
       giveUpHopeless();
@@ -202,17 +207,16 @@ void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
   if (moved.empty()) {
     return;
   }
-  const double converged = surface_.getDimensions() > kManyUnknown ? kGainOfMany : kConvergedGain;
   std::vector<LocalSurface> reached = surface_.linearize(to);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     Search& search = *moved[i];
-    search.active = reached[i].simulated && predictGain(reached[i], search.held) > converged;
+    search.active = reached[i].simulated && predictGain(reached[i], search.held) > pace_.converged;
     if (reached[i].simulated) {
       search.local = std::move(reached[i]);
       settle(search);
     }
   }
-  if (surface_.getDimensions() > kManyUnknown) {  // into what others of these have found as well
+  if (pace_.leads) {  // into what others of these have found as well
     std::for_each(moved.begin(), moved.end(), [this](Search* search) {
       if (search->active) {
         settle(*search);
@@ -221,11 +225,10 @@ void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
   }
 }
 
-/// Where a search is, or, of many parameters, where its linear model leads: of so many, place and chi-square
-/// do not agree with a basin's by chance, and each step takes a simulation with as many derivatives.
+/// Where a search is, or where its linear model leads (SearchPace::leads).
 SearchTeam::Place SearchTeam::findPlace(const Search& search) const {
   const LocalSurface& local = search.local;
-  if (surface_.getDimensions() <= kManyUnknown) {
+  if (!pace_.leads) {
     return {local.at, local.misfit};
   }
   const VectorXd step = calcStep(local, search.held, kMinDamping);

@@ -7,6 +7,24 @@
 
 namespace twinmap {
 
+/// How searches go and where they end. Of many parameters an iteration is dear, the response is nearly linear
+/// where their priors leave them, and place and chi-square do not agree with a basin's by chance.
+struct SearchPace {
+  double converged =
+      0.01;  ///< of chi-square, left to gain by the linear model: a tenth of a standard deviation
+  /// The first iteration after which searches are judged: whatever is near a minimum has come down to it.
+  int first_judged = 5;
+  /// Whether searches end where their linear models lead into a basin that another has found; else where they
+  /// are in it themselves.
+  bool leads = false;
+};
+
+/// Of more than kManyUnknown a gain of 1.0 is left, as chi-square varies by some ten.
+SearchPace choosePace(Eigen::Index dimensions);
+
+/// Whether no more than SearchPace().converged is left to gain within the bounds.
+bool isMinimum(const LocalSurface& local);
+
 /// Searches for minima of chi-square that go side by side, by Levenberg and Marquardt's method: an iteration
 /// is a batch of simulations, three dampings for each search or one where its linear model held the last
 /// time, and a batch with derivatives for those that moved. Parameters at a bound whose descent points
@@ -21,6 +39,8 @@ class SearchTeam {
 
   /// Basins of the same surface that earlier searches have found. Before run().
   void setKnown(const std::vector<Basin>& known) { known_ = known; }
+  /// Another than choosePace(). Before run().
+  void setPace(const SearchPace& pace) { pace_ = pace; }
   void run(int max_iterations);
 
   /// Where search i is.
@@ -54,6 +74,7 @@ class SearchTeam {
   void giveUpSlow();
 
   MisfitSurface& surface_;
+  SearchPace pace_;
   std::vector<Search> searches_;
   std::vector<Basin> known_;
 };

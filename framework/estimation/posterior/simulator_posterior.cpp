@@ -121,11 +121,14 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   if (problem.trials.size() == 1) {
     posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
   }
+  std::optional<Sampling> linear;
+  if (options.is_linear && problem.drawn > kManyUnknown) {
+    linear = sampleLinearModel(problem, found, whole, posterior.isExplained(), options);
+  }
   const bool is_spared = options.spares_misfit && !posterior.isExplained();
   const Sampling sampling =
-      options.is_linear && problem.drawn > kManyUnknown
-          ? sampleLinearModel(problem, found, whole, options)
-          : samplePosterior(problem, found, whole, mayBend(problem) && !is_spared, options);
+      linear ? *linear : samplePosterior(problem, found, whole, mayBend(problem) && !is_spared, options);
+  posterior.is_linear = linear.has_value();
   posterior.simulations = surface.getSimulations() + sampling.simulations;
   posterior.effective_sample_size = sampling.drawn.effective_sample_size;
   posterior.pareto_shape = sampling.drawn.pareto_shape;

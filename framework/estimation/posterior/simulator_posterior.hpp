@@ -37,6 +37,7 @@ struct SimulatorPosterior {
   /// Of a single measurement, as they are independent and of unit variance if its hypothesis is true.
   ResidualLoss::Standardized standardized;
   double chi_square = 0.0, degrees = 0.0;  ///< of the best point; 0 degrees where nothing could be simulated
+  bool is_linear = false;  ///< whether draws are those of a linear response about the best fit
   double effective_sample_size = 0.0;
   double pareto_shape = 0.0;
   int starts = 0;       ///< searches for basins
@@ -65,7 +66,7 @@ struct SimulatorPosteriorOptions : PosteriorDrawOptions {
   /// does not explain the best point: they would be of a wrong model.
   bool spares_misfit = false;
   /// Of more than kManyUnknown: whether draws are those of a linear response about the best fit, within the
-  /// prior and the bounds, without a simulation of any.
+  /// prior and the bounds, without a simulation of any, where that does (sampleLinearModel).
   bool is_linear = false;
   bool profiles = false;  ///< whether profile likelihoods are wanted, of up to kManyUnknown, all drawn
 };

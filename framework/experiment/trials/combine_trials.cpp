@@ -179,6 +179,10 @@ void throwUnknownTrial(const std::string& trial, const std::vector<std::string>&
                                        : listNames(names) + suggestName(trial, names)));
 }
 
+std::string describeOwnFile(const std::string& trial) {
+  return fmt::format("write the trial's own file by twinmap check FILE trial={} > {}.yaml", trial, trial);
+}
+
 void requireOneTrial(const ExperimentSpec& experiment, const std::string& what) {
   if (experiment.trials.empty()) {
     return;
@@ -187,11 +191,9 @@ void requireOneTrial(const ExperimentSpec& experiment, const std::string& what) 
   for (const TrialExperiment& trial : experiment.trials) {
     names.push_back(trial.name);
   }
-  throw ExperimentError(
-      experiment.name.where, "",
-      fmt::format("describes the trials {}, but {}; choose one by trial={}, or take its own file: twinmap "
-                  "check FILE trial={} > {}.yaml",
-                  listNames(names), what, names.front(), names.front(), names.front()));
+  throw ExperimentError(experiment.name.where, "",
+                        fmt::format("describes the trials {}, but {}; choose one by trial={}, or {}",
+                                    listNames(names), what, names.front(), describeOwnFile(names.front())));
 }
 
 }  // namespace twinmap

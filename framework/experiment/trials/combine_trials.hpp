@@ -24,6 +24,9 @@ void changeTrials(ExperimentSpec& experiment, const std::function<void(Experimen
 /// Throws ExperimentError: there is no such trial, but those of these names.
 [[noreturn]] void throwUnknownTrial(const std::string& trial, const std::vector<std::string>& names);
 
+/// How a user gets the experiment file of one trial.
+std::string describeOwnFile(const std::string& trial = "NAME");
+
 /// Throws ExperimentError where the experiment combines trials: for what is of one at a time.
 void requireOneTrial(const ExperimentSpec& experiment, const std::string& what);
 

@@ -103,14 +103,14 @@ std::string makeEstimateTable(const JointInference& inferred, const std::vector<
 }
 
 std::string makeAloneTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  std::vector<std::vector<std::string>> rows{{inferred.alone_is_linear ? "alone, linear" : "alone"}};
-  rows.front().emplace_back("status");
+  std::vector<std::vector<std::string>> rows{{"alone", "status"}};
   for (const ParameterSpec& parameter : parameters) {
     rows.front().push_back(parameter.name.text);
   }
   for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
     const RecordingInference& one = inferred.alone[k];
-    rows.push_back({one.label, selectEstimate(one.inferred).statuses.front()});
+    rows.push_back({one.label + (one.posterior.is_linear ? ", linear" : ""),
+                    selectEstimate(one.inferred).statuses.front()});
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Index>(p);
       rows.back().push_back(one.posterior.isReliable()
@@ -160,6 +160,7 @@ Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterS
   for (const RecordingInference& recording : inferred.alone) {
     Json one = parseJson(makeInferenceJson(recording.inferred, parameters, {}));
     one["label"] = recording.label;
+    one["is_linear"] = recording.posterior.is_linear;
     trials.push_back(one);
   }
   return trials;
@@ -232,7 +233,6 @@ std::string makeJointJson(const JointInference& inferred, const std::vector<Para
                                                      {"distance", one.distance}});
     }
   }
-  json["alone_is_linear"] = inferred.alone_is_linear;
   json["trials"] = makeTrialsJson(inferred, parameters);
   json["simulations"] = inferred.simulations;
   return formatJson(json);

@@ -407,6 +407,10 @@ class Direct(FolderTestCase):
         result = call("infer", self.folder / "no.yaml", self.measured)
         self.assertEqual(result.returncode, 2)
         self.assertIn("no.yaml", result.stderr)
+        for options in ([], ["--joint"], ["--segments", "1"]):
+            result = call("infer", self.measured, self.measured, *options)
+            self.assertEqual(result.returncode, 2)
+            self.assertIn("measured.csv: is a recording; first give", result.stderr)
 
 
 if __name__ == "__main__":

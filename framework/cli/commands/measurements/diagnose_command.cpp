@@ -4,7 +4,6 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
-#include "framework/cli/commands/measurements/own_file.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/inference/inference_source.hpp"

@@ -13,6 +13,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/infer_history.hpp"
 #include "framework/cli/commands/measurements/infer_options.hpp"
+#include "framework/cli/commands/measurements/inferred_printer.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/missing_term.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
@@ -26,12 +27,6 @@
 
 namespace twinmap::cli {
 namespace {
-
-enum class Format { kTable, kCsv, kJson };
-
-Format chooseFormat(const InferArguments& arguments) {
-  return arguments.json || arguments.follow ? Format::kJson : arguments.csv ? Format::kCsv : Format::kTable;
-}
 
 /// A file that rows are added to, if it is wanted.
 class RowsFile {
@@ -70,7 +65,8 @@ class InferCommand {
         run_(arguments.run),
         names_missing_(!arguments.follow && !arguments.csv),
         diagnoses_(arguments.diagnose),
-        format_(chooseFormat(arguments)),
+        printer_(chooseFormat(arguments), getModel().parameters, session_->refines(),
+                 session_->samplesPosteriors()),
         history_(getModel().parameters),
         page_(arguments.page),
         starts_(arguments.starts.begin(), arguments.starts.end()),
@@ -79,9 +75,7 @@ class InferCommand {
     if (starts_.empty()) {
       starts_.emplace_back(std::nullopt);
     }
-    if (format_ == Format::kCsv) {
-      std::cout << makeInferenceCsvHeader(session_->refines(), session_->samplesPosteriors());
-    }
+    printer_.printHeader();
   }
 
   void inferFile(const std::string& file) {
@@ -143,12 +137,12 @@ class InferCommand {
   }
 
   void printCourses() const {
-    if (format_ != Format::kTable && page_.empty()) {
+    if (!isTable() && page_.empty()) {
       return;
     }
     const History& history = history_.get();
     const std::optional<std::vector<Course>> courses = fitCourses(history);
-    if (format_ == Format::kTable && courses) {
+    if (isTable() && courses) {
       std::cout << "\n" << describeCourses(history, courses);
     }
     std::cout.flush();
@@ -158,12 +152,11 @@ class InferCommand {
     }
   }
 
+  bool isTable() const { return printer_.getFormat() == InferFormat::kTable; }
   const ModelSpec& getModel() const { return source_.getExperiment().model; }
   /// recording: to be diagnosed as well; null: not.
   void print(const InferredMeasurement& inferred, const RecordedFeatures* recording) {
-    const std::vector<ParameterSpec>& parameters = getModel().parameters;
-    const std::vector<FeatureInfo>& features = source_.getReader().getExtractor().getInfos();
-    if (format_ == Format::kTable || !page_.empty()) {  // a stream has no end
+    if (isTable() || !page_.empty()) {  // a stream has no end
       history_.add(inferred);
     }
     if (draws_.isWanted()) {
@@ -172,22 +165,10 @@ class InferCommand {
     if (profile_.isWanted()) {
       profile_.add(makeProfileCsvRows(inferred, collectUnknown(getModel())));
     }
-    switch (format_) {
-      case Format::kTable:
-        std::cout << (count_ > 0 ? "\n" : "") << makeInferenceTable(inferred, parameters, features);
-        if (recording != nullptr) {
-          std::cout << "\n" << makeDiagnosisTable(diagnose(*recording), inferred.source);
-        }
-        break;
-      case Format::kCsv:
-        std::cout << makeInferenceCsvRows(inferred, parameters, session_->samplesPosteriors());
-        break;
-      case Format::kJson:
-        std::cout << makeInferenceJson(inferred, parameters, features) << '\n';
-        if (recording != nullptr) {
-          std::cout << makeDiagnosisJson(diagnose(*recording), inferred.source) << '\n';
-        }
-        break;
+    printer_.print(inferred, source_.getReader().getExtractor().getInfos(), count_ == 0);
+    if (recording != nullptr) {  // not of CSV
+      std::cout << (isTable() ? "\n" + makeDiagnosisTable(diagnose(*recording), inferred.source)
+                              : makeDiagnosisJson(diagnose(*recording), inferred.source) + "\n");
     }
   }
 
@@ -200,7 +181,7 @@ class InferCommand {
   void reportError(const std::string& source, double start, const std::string& error) {
     ++errors_;
     ++count_;
-    if (format_ == Format::kJson) {
+    if (printer_.getFormat() == InferFormat::kJson) {
       std::cout << makeErrorJson(source, start, error) << '\n';
     }
     std::cout.flush();
@@ -212,7 +193,7 @@ class InferCommand {
   const Eigen::VectorXd known_;
   const std::string run_;
   const bool names_missing_, diagnoses_;
-  const Format format_;
+  const InferredPrinter printer_;
   InferHistory history_;
   const std::string page_;
   std::vector<std::optional<double>> starts_;

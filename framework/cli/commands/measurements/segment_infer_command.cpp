@@ -1,13 +1,11 @@
-#include <iostream>
-
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/experiment_of_run.hpp"
+#include "framework/cli/commands/measurements/inferred_printer.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/segments/segment_inference.hpp"
-#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -39,19 +37,6 @@ ExperimentSpec loadWithoutTrials(const std::string& file) {
   return readExperiment(trials.front().tree);
 }
 
-void print(const InferredMeasurement& inferred, const SegmentInference& inference,
-           const InferArguments& arguments, bool is_first) {
-  const std::vector<ParameterSpec>& parameters = inference.getExperiment().model.parameters;
-  const std::vector<FeatureInfo>& samples = inferred.segments->samples;
-  if (arguments.json) {
-    std::cout << makeInferenceJson(inferred, parameters, samples) << "\n";
-  } else if (arguments.csv) {
-    std::cout << makeInferenceCsvRows(inferred, parameters, false);
-  } else {
-    std::cout << (is_first ? "" : "\n") << makeInferenceTable(inferred, parameters, samples);
-  }
-}
-
 }  // namespace
 
 void inferInSegments(const InferArguments& arguments) {
@@ -65,9 +50,9 @@ void inferInSegments(const InferArguments& arguments) {
   if (starts.empty()) {
     starts.emplace_back(std::nullopt);
   }
-  if (arguments.csv) {
-    std::cout << makeInferenceCsvHeader(false, false);
-  }
+  const InferredPrinter printer(chooseFormat(arguments), inference.getExperiment().model.parameters, false,
+                                false);
+  printer.printHeader();
   bool is_first = true;
   for (const std::string& file : arguments.files) {
     const Table table = readTable(file, inference.listColumns(), MissingCells::kKeep);
@@ -75,7 +60,7 @@ void inferInSegments(const InferArguments& arguments) {
       WaitingLine waiting("inferring " + file + " in segments");
       const InferredMeasurement inferred = inference.infer(table, start);
       waiting.clear();
-      print(inferred, inference, arguments, is_first);
+      printer.print(inferred, inferred.segments->samples, is_first);
       is_first = false;
     }
   }

@@ -1,14 +1,17 @@
 #include "framework/cli/commands/measurements/trials_of_run.hpp"
 
-#include <iostream>
+#include <algorithm>
 
 #include "framework/base/log/log.hpp"
+#include "framework/cli/commands/measurements/experiment_of_run.hpp"
 #include "framework/cli/commands/measurements/infer_options.hpp"
+#include "framework/cli/commands/measurements/inferred_printer.hpp"
 #include "framework/cli/waiting_line.hpp"
+#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/recording_list.hpp"
-#include "framework/inference/text/inference_text.hpp"
 #include "framework/inference/trial_reader.hpp"
 
 namespace twinmap::cli {
@@ -19,20 +22,32 @@ bool isTrained(const std::filesystem::path& run) {
                                             : run.extension() == ".h5";
 }
 
+/// Whether each of the run's trials has one of the files, as far as the experiment beside the map says: a map
+/// takes longer to load.
+bool mayHaveAll(const InferArguments& arguments, const std::vector<TrialFile>& files) {
+  if (!std::filesystem::is_directory(arguments.run)) {
+    return true;
+  }
+  const std::vector<Trial> trials = expandTrials(loadExperimentTree(findExperimentFile(arguments.run)));
+  return std::all_of(trials.begin(), trials.end(), [&](const Trial& trial) {
+    return trial.name.empty() || std::count_if(files.begin(), files.end(), [&](const TrialFile& one) {
+                                   return one.trial == trial.name;
+                                 }) == 1;
+  });
+}
+
+void logMissing() {
+  logInfo("the estimator of the run needs one whole recording of each trial; inferring by simulation");
+}
+
 }  // namespace
 
 void printInferred(const InferArguments& arguments, const InferredMeasurement& inferred,
                    const MeasurementReader& reader, const MeasurementInference& session) {
-  const std::vector<ParameterSpec>& parameters = reader.getExperiment().model.parameters;
-  const std::vector<FeatureInfo>& features = reader.getExtractor().getInfos();
-  if (arguments.json) {
-    std::cout << makeInferenceJson(inferred, parameters, features) << "\n";
-  } else if (arguments.csv) {
-    std::cout << makeInferenceCsvHeader(session.refines(), session.samplesPosteriors())
-              << makeInferenceCsvRows(inferred, parameters, session.samplesPosteriors());
-  } else {
-    std::cout << makeInferenceTable(inferred, parameters, features);
-  }
+  const InferredPrinter printer(chooseFormat(arguments), reader.getExperiment().model.parameters,
+                                session.refines(), session.samplesPosteriors());
+  printer.printHeader();
+  printer.print(inferred, reader.getExtractor().getInfos(), true);
 }
 
 Eigen::VectorXd readKnown(const InferArguments& arguments, const MeasurementReader& reader) {
@@ -44,11 +59,16 @@ bool inferTrialsByRun(const InferArguments& arguments) {
       !isTrained(arguments.run)) {
     return false;
   }
+  const std::vector<TrialFile> files = parseTrialFiles(arguments.trials);
+  if (!mayHaveAll(arguments, files)) {
+    logMissing();
+    return false;
+  }
   const InferenceSource source(arguments.run);
   const TrialReader trials(source.getExperiment());
   std::vector<RecordedTable> tables;
   std::string names;
-  for (const TrialFile& one : parseTrialFiles(arguments.trials)) {
+  for (const TrialFile& one : files) {
     tables.push_back(
         {one.trial, one.file, readTable(one.file, trials.get(one.trial).listColumns(), MissingCells::kKeep)});
     names += (names.empty() ? "" : ", ") + one.trial + "=" + one.file;
@@ -57,7 +77,7 @@ bool inferTrialsByRun(const InferArguments& arguments) {
       arguments.starts.empty() ? std::nullopt : std::optional<double>(arguments.starts.front());
   const std::optional<Eigen::VectorXd> features = trials.read(tables, start);
   if (!features) {
-    logInfo("the estimator of the run needs one whole recording of each trial; inferring by simulation");
+    logMissing();
     return false;
   }
   const std::unique_ptr<MeasurementInference> session = source.makeSession(makeSessionOptions(arguments));

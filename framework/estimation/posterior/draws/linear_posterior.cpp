@@ -109,6 +109,28 @@ AdaptiveDraws drawLinear(const MisfitSurface& surface, const Basin& basin, int d
   return {importance::weigh(points, VectorXd::Zero(draws)), static_cast<double>(draws), 0.0, 1};
 }
 
+VectorXd calcDisplacements(MisfitSurface& surface, const Basin& basin, const MatrixXd& points) {
+  const VectorXd& at = basin.local.at;
+  const PriorMisfit prior = surface.linearizePrior(at);
+  const auto limit = [](const VectorXd& point) { return point.cwiseMax(-1.0).cwiseMin(1.0); };
+  const VectorXd mean = limit(at + basin.covariance * basin.local.descent);
+  VectorXd squares = VectorXd::Zero(at.size());
+  for (const LocalSurface& local : surface.linearize(points)) {
+    if (!local.simulated) {
+      return VectorXd::Constant(at.size(), std::numeric_limits<double>::infinity());
+    }
+    // with the prior of the minimum, and the box as a normal distribution about it
+    const PriorMisfit own = surface.linearizePrior(local.at);
+    const VectorXd apart = local.at - at;
+    const VectorXd descent = local.descent - own.descent + prior.descent - prior.information * apart -
+                             kHalfWidthInformation * apart;
+    const MatrixXd covariance = calcBasinCovariance(local.information - own.information + prior.information);
+    squares += (limit(local.at + covariance * descent) - mean).cwiseAbs2();
+  }
+  const VectorXd variances = static_cast<double>(points.cols()) * basin.covariance.diagonal();
+  return squares.cwiseQuotient(variances).cwiseSqrt();
+}
+
 double calcNonlinearity(MisfitSurface& surface, const Basin& basin, std::uint64_t seed) {
   // The variance is then known to a fifth; of many parameters, whose simulations are dear, to 30 %.
   const int draws = surface.getDimensions() > kManyUnknown ? 24 : 48;

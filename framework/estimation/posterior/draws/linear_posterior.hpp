@@ -25,6 +25,13 @@ importance::AdaptiveDraws sampleLinearized(MisfitSurface& surface, const Basin& 
 importance::AdaptiveDraws drawLinear(const MisfitSurface& surface, const Basin& basin, int draws,
                                      std::uint64_t seed);
 
+/// How far the linear response about a basin's minimum is to be believed: of each coordinate, by how many of
+/// its standard deviations the responses that are linear about `points` (u x n), some of its own draws, put
+/// the mean elsewhere (root mean square). The misfit of these draws says less: where a valley bends it is
+/// large, though the mean and standard deviation of each parameter are right. Infinite where one of them
+/// cannot be simulated. Cost: a simulation with derivatives of each.
+Eigen::VectorXd calcDisplacements(MisfitSurface& surface, const Basin& basin, const Eigen::MatrixXd& points);
+
 /// How far from linear the response is where that posterior has its mass: the variance of the logarithms of
 /// some draws' weights, infinite where one of them cannot be simulated. What is straight in the parameters is
 /// bent in their logarithms, and the other way about.

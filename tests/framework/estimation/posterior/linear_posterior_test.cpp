@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <string>
 
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "tests/framework/estimation/refined/problem.hpp"
@@ -62,7 +63,9 @@ TEST(ManyParameters, AreLeastSquaresWhereSeenAndUniformWhereNot) {
   EXPECT_LT(posterior.simulations, 3 * 4000);
   const SimulatorPosterior unweighted = sampleMany(problem, features, 4000, true);
   expectLeastSquaresWhereSeen(unweighted, features);
-  EXPECT_LE(unweighted.simulations + 4000, posterior.simulations);  // none of a draw
+  EXPECT_TRUE(unweighted.is_linear);
+  // none of a draw, but those of the check at eight of them, by differences here
+  EXPECT_LE(unweighted.simulations + 4000, posterior.simulations + 8 * 2 * kParameters);
 }
 
 TEST(ManyParameters, KeepPriorsOfAnyShape) {
@@ -107,9 +110,43 @@ TEST(ManyParameters, AreUnreliableWhereTheResponseIsFarFromQuadratic) {
     return response;
   };
   Problem problem(kSampleTimes, bent, testing::makeParameters(kParameters, -1.0, 1.0), kSampleNoise);
+  const VectorXd features = problem.measure(VectorXd::Constant(kParameters, 0.4), kSampleNoise);
+  for (const bool is_linear : {false, true}) {
+    const SimulatorPosterior posterior = sampleMany(problem, features, 500, is_linear);
+    EXPECT_FALSE(posterior.isReliable());
+    EXPECT_FALSE(posterior.is_linear);  // linear responses about its draws lead elsewhere
+  }
+}
+
+/// Ten valleys b = a^2, hundreds of times as long as they are narrow: searches creep along them.
+TEST(ManyParameters, AreOfOneMinimumWhereSearchesEndOnTheWayToIt) {
+  constexpr Index kValleys = 10;
+  const auto respond = [](const VectorXd& x) {
+    VectorXd response(2 * kValleys);
+    response << 100.0 * (x.tail(kValleys) - x.head(kValleys).cwiseAbs2()), 0.3 * x.head(kValleys);
+    return response;
+  };
+  Problem problem(2 * kValleys, respond, testing::makeParameters(2 * kValleys, -1.0, 1.0), 0.2);
+  const VectorXd truth = VectorXd::LinSpaced(2 * kValleys, 0.1, 0.6);
+  SimulatorPosteriorOptions options;
+  options.draws = 64;
   const SimulatorPosterior posterior =
-      sampleMany(problem, problem.measure(VectorXd::Constant(kParameters, 0.4), kSampleNoise), 500);
-  EXPECT_FALSE(posterior.isReliable());
+      samplePosterior(problem.simulator, problem.model, {}, problem.measure(truth, 0.2),
+                      VectorXd::Zero(2 * kValleys), MatrixXd(), options);
+  EXPECT_EQ(posterior.message.find("several minima"), std::string::npos) << posterior.message;
+}
+
+/// The first parameter's sign does not matter.
+TEST(ManyParameters, AreUnreliableWithTwoMinima) {
+  const auto mirrored = [](const VectorXd& x) {
+    VectorXd response = respondToSome(x);
+    response += makeMixedMatrix().col(0) * (x[0] * x[0] - x[0]);
+    return response;
+  };
+  Problem problem(kSampleTimes, mirrored, testing::makeParameters(kParameters, -1.0, 1.0), kSampleNoise);
+  const SimulatorPosterior posterior =
+      sampleMany(problem, problem.measure(VectorXd::Constant(kParameters, 0.5), kSampleNoise), 500, true);
+  EXPECT_NE(posterior.message.find("several minima"), std::string::npos) << posterior.message;
 }
 
 }  // namespace
