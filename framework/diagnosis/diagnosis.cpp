@@ -139,7 +139,8 @@ class Diagnoser {
       diagnosis.remainder =
           findRemainder(diagnosis.corrected, recordings_, diagnosis.after.posterior.best, shared_);
     }
-    if (diagnosis.found > 0 && options_.accepted.empty()) {
+    // what explains all is not beaten by a force that may be anything
+    if (diagnosis.found > 0 && options_.accepted.empty() && !diagnosis.after.isExplained()) {
       diagnosis.process = findBetterProcess(fits.front().experiment, diagnosis);
     }
   }

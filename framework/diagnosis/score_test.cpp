@@ -80,8 +80,7 @@ TermScore ScoreTest::calcScore(Index term, double size) const {
   return score;
 }
 
-ScoreTest::JointScore ScoreTest::calcJointScore(const std::vector<Index>& terms,
-                                                const VectorXd& sizes) const {
+ScoreTest::JointScore ScoreTest::calcJointScore(const std::vector<Index>& terms) const {
   const MatrixXd columns = terms_(Eigen::all, terms);
   const MatrixXd gram = columns.transpose() * columns;
   const VectorXd lengths = gram.diagonal().cwiseSqrt();
@@ -96,14 +95,10 @@ ScoreTest::JointScore ScoreTest::calcJointScore(const std::vector<Index>& terms,
       }
     }
   }
-  const linalg::Cholesky of_terms = linalg::calcCholesky(gram);
-  score.estimates = linalg::solveCholesky(of_terms.lower, right);
+  const linalg::Cholesky factor = linalg::calcCholesky(gram);
+  score.estimates = linalg::solveCholesky(factor.lower, right);
+  score.stddevs = factor.lower.diagonal().cwiseInverse();
   score.gain = right.dot(score.estimates);
-  const MatrixXd shrunk = MatrixXd::Identity(k, k) + sizes.asDiagonal() * gram * sizes.asDiagonal();
-  const linalg::Cholesky of_prior = linalg::calcCholesky(shrunk);
-  const VectorXd scaled = sizes.cwiseProduct(right);
-  score.log_evidence = 0.5 * scaled.dot(VectorXd(linalg::solveCholesky(of_prior.lower, scaled))) -
-                       of_prior.lower.diagonal().array().log().sum();
   score.shifts = VectorXd::Zero(taken_up_.rows());
   for (Index i = 0; i < k; ++i) {
     score.shifts += calcShifts(terms[static_cast<std::size_t>(i)], score.estimates[i]);
@@ -164,6 +159,22 @@ double calcCriticalZ(double level, int tests) {
 double calcLogEvidence(double gain, double stddev, double size) {
   const double ratio = size * size / (stddev * stddev);
   return 0.5 * gain * ratio / (1.0 + ratio) - 0.5 * std::log1p(ratio);
+}
+
+double calcLogEvidence(double gain, const SizedCoefficient& coefficient) {
+  // nine decades, as coefficients on a motor's side of a gear are a millionth of what matters; half a decade
+  // apart, so that their normal distributions merge into one smooth prior
+  constexpr int kSizes = 19;
+  const double variance = coefficient.stddev * coefficient.stddev;
+  const double square = coefficient.estimate * coefficient.estimate;
+  double size = std::max(coefficient.size, std::abs(coefficient.estimate));
+  double sum = 0.0;
+  for (int i = 0; i < kSizes; ++i, size /= std::sqrt(10.0)) {
+    const double wide = variance + size * size;
+    // none of them vanishes: the first is at least as wide as the estimate
+    sum += std::exp(-0.5 * square / wide) * std::sqrt(variance / wide);
+  }
+  return 0.5 * gain + std::log(sum / kSizes);
 }
 
 }  // namespace twinmap

@@ -35,15 +35,14 @@ class ScoreTest {
   /// Length of what a term of coefficient 1 does besides the parameters, in noise standard deviations.
   double calcLength(Eigen::Index term) const { return terms_.col(term).norm(); }
 
-  /// What several terms (k) with normal priors about 0 of the standard deviations `sizes` explain together:
-  /// log of their evidence against none, and their estimates. Exact where the model is linear.
+  /// What several terms (k) explain together, by least squares.
   struct JointScore {
-    double log_evidence = 0.0;
-    double gain = 0.0;          ///< of chi-square, by least squares
-    Eigen::VectorXd estimates;  ///< k, of least squares; empty where the terms are not distinct
+    double gain = 0.0;          ///< of chi-square
+    Eigen::VectorXd estimates;  ///< k; empty where the terms are not distinct
+    Eigen::VectorXd stddevs;    ///< k, each where those behind it are absent
     Eigen::VectorXd shifts;     ///< u: how the parameters move
   };
-  JointScore calcJointScore(const std::vector<Eigen::Index>& terms, const Eigen::VectorXd& sizes) const;
+  JointScore calcJointScore(const std::vector<Eigen::Index>& terms) const;
 
   /// What each two terms take from chi-square together (k x k, above the diagonal); 0 of those that are
   /// alike.
@@ -80,5 +79,14 @@ double calcCriticalZ(double level, int tests);
 /// prior that is normal about 0 with the sd `size`, against its absence: Laplace's approximation, exact where
 /// the model is linear.
 double calcLogEvidence(double gain, double stddev, double size);
+
+/// Of a coefficient of any size up to one that matters: its prior is normal about 0 with an sd between `size`
+/// (or the estimate, where that is larger) and a billionth of it, each order of magnitude as likely, so that
+/// what decides between terms is how well they explain and not how small their coefficients are beside
+/// `size`. Laplace's approximation, exact where gain = (estimate / stddev)^2.
+struct SizedCoefficient {
+  double estimate = 0.0, stddev = 0.0, size = 0.0;
+};
+double calcLogEvidence(double gain, const SizedCoefficient& coefficient);
 
 }  // namespace twinmap

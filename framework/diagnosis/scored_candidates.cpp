@@ -83,29 +83,32 @@ MatrixXd makeTermStarts(const VectorXd& point, const AugmentedExperiment& augmen
   return starts;
 }
 
-/// What the freedom of a scale in column `at` of the derivatives costs in evidence: its posterior, which is
-/// normal, against a prior that is uniform in its logarithm.
-double calcScaleEvidence(const LinearizedRecordings& linear, Index at, double value, double reach) {
+/// The sd of a scale's prior, which is uniform in its logarithm.
+double calcPriorStddev(const OwnScale& scale, double value) {
+  return value * std::log(scale.reach) / std::sqrt(3.0);
+}
+
+/// What the freedom of a scale in column `at` of the derivatives costs in evidence, those of its term before
+/// it from `first` on given: so the product over a term's coefficient and scales is the volume of all
+/// together, however they make up for each other.
+double calcScaleEvidence(const LinearizedRecordings& linear, Index first, Index at, double prior_stddev) {
   const ScoreTest test(linear.residual,
-                       linear.jacobian(Eigen::all, listOthers(linear.jacobian.cols(), at, 1)),
+                       linear.jacobian(Eigen::all, listOthers(linear.jacobian.cols(), first, at - first + 1)),
                        linear.jacobian.col(at));
   const TermScore score = test.calcScore(0, kInfinity);
-  return score.visible ? calcLogEvidence(0.0, score.stddev / value, std::log(reach) / std::sqrt(3.0)) : 0.0;
+  return score.visible ? std::log(std::min(1.0, score.stddev / prior_stddev)) : 0.0;
 }
 
 /// sd of the coefficient, column `first` of the derivatives, and what its own scales cost.
-void setTermStddevs(const LinearizedRecordings& linear, Index first, const TermCandidate& candidate,
+void setTermStddevs(const LinearizedRecordings& recorded, Index first, const TermCandidate& candidate,
                     FittedTerm& fitted) {
+  const LinearizedRecordings linear = addScalePriors(recorded, first, candidate, fitted.point);
   const MatrixXd& jacobian = linear.jacobian;
   const ScoreTest test(linear.residual, jacobian(Eigen::all, listOthers(jacobian.cols(), first, 1)),
                        jacobian.col(first));
   fitted.stddev = test.calcScore(0, kInfinity).stddev;
   fitted.cautious_stddev = test.calcCautiousStddev(0, linear.starts);
-  for (std::size_t i = 0; i < candidate.own_scales.size(); ++i) {
-    const Index at = first + 1 + static_cast<Index>(i);
-    fitted.log_evidence_of_scales +=
-        calcScaleEvidence(linear, at, fitted.point[at], candidate.own_scales[i].reach);
-  }
+  fitted.log_evidence_of_scales = calcScalesEvidence(linear, first, candidate, fitted.point);
 }
 
 /// The derivatives of all residuals along some of the candidates, as columns behind those of `all`; the first
@@ -148,6 +151,32 @@ std::vector<std::vector<TermCandidate>> splitByStates(const std::vector<TermCand
 }
 
 }  // namespace
+
+LinearizedRecordings addScalePriors(const LinearizedRecordings& linear, Index first,
+                                    const TermCandidate& candidate, const VectorXd& point) {
+  const auto scales = static_cast<Index>(candidate.own_scales.size());
+  const Index n = linear.residual.size(), u = linear.jacobian.cols();
+  LinearizedRecordings all{VectorXd::Zero(n + scales), MatrixXd::Zero(n + scales, u), linear.starts};
+  all.residual.head(n) = linear.residual;
+  all.jacobian.topRows(n) = linear.jacobian;
+  for (Index i = 0; i < scales; ++i) {
+    const Index at = first + 1 + i;
+    const OwnScale& scale = candidate.own_scales[static_cast<std::size_t>(i)];
+    all.jacobian(n + i, at) = 1.0 / calcPriorStddev(scale, point[at]);
+    all.starts.push_back(n + i);
+  }
+  return all;
+}
+
+double calcScalesEvidence(const LinearizedRecordings& linear, Index first, const TermCandidate& candidate,
+                          const VectorXd& point) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < candidate.own_scales.size(); ++i) {
+    const Index at = first + 1 + static_cast<Index>(i);
+    sum += calcScaleEvidence(linear, first, at, calcPriorStddev(candidate.own_scales[i], point[at]));
+  }
+  return sum;
+}
 
 void requireSystem(const ExperimentSpec& experiment) {
   if (!isGiven(experiment.model.system)) {

@@ -40,6 +40,15 @@ struct FittedTerm {
   double log_evidence_of_scales = 0.0;  ///< what the freedom of own scales costs, at most 0
 };
 
+/// The derivatives with what is known of a term's own scales before any recording, as further residuals:
+/// their priors are uniform in the logarithm. first: column of its coefficient, before those of its scales.
+LinearizedRecordings addScalePriors(const LinearizedRecordings& linear, Eigen::Index first,
+                                    const TermCandidate& candidate, const Eigen::VectorXd& point);
+
+/// What the freedom of a term's own scales costs in evidence, at most 0. linear: with addScalePriors().
+double calcScalesEvidence(const LinearizedRecordings& linear, Eigen::Index first,
+                          const TermCandidate& candidate, const Eigen::VectorXd& point);
+
 /// Searches from `point` (u) without the term and with its score's estimate.
 FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const TermCandidate& candidate, const TermScore& score, const Eigen::VectorXd& point);

@@ -18,8 +18,9 @@ TermFinding makeFinding(const ScoredCandidates& scored, std::size_t i, const Cur
   finding.stddev = score.stddev;
   finding.z = score.z;
   finding.p_value = calcPValue(score.z, scored.tested);
-  finding.log_evidence = calcLogEvidence(score.z * score.z, score.stddev, finding.candidate.size) +
-                         calcLogSignEvidence(finding.candidate, score.estimate);
+  finding.log_evidence =
+      calcLogEvidence(score.z * score.z, {score.estimate, score.stddev, finding.candidate.size}) +
+      calcLogSignEvidence(finding.candidate, score.estimate);
   finding.chi_square = current.chi_square - score.z * score.z;
   finding.share = calcShare(current.chi_square, finding.chi_square, current.degrees);
   finding.shifts = score.shifts.head(p).cwiseQuotient(scored.stddevs.head(p));
@@ -79,8 +80,8 @@ void fitRanked(const CurrentFit& current, const RecordedFeatures& recordings, co
   finding.estimate = fitted.estimate;
   finding.stddev = fitted.stddev;
   finding.share = calcShare(current.chi_square, fitted.chi_square, current.degrees);
-  finding.log_evidence = calcLogEvidence(std::max(0.0, current.chi_square - fitted.chi_square), fitted.stddev,
-                                         std::max(finding.candidate.size, std::abs(fitted.estimate))) +
+  finding.log_evidence = calcLogEvidence(std::max(0.0, current.chi_square - fitted.chi_square),
+                                         {fitted.estimate, fitted.stddev, finding.candidate.size}) +
                          fitted.log_evidence_of_scales +
                          calcLogSignEvidence(finding.candidate, fitted.estimate);
   finding.shifts = (fitted.point.head(p) - current.point.head(p)).cwiseQuotient(scored.stddevs.head(p));

@@ -18,6 +18,10 @@ namespace {
 /// large.
 constexpr std::size_t kFittedTerms = 6;
 
+/// And so many of those that the linear model hardly tells from the best: the same terms on both sides of a
+/// gear, say.
+constexpr std::size_t kFittedAlike = 12;
+
 /// Of the level, for pairs of terms: singles have the rest.
 constexpr double kPairShare = 0.1;
 
@@ -141,7 +145,7 @@ std::optional<FittedPair> TermSearch::findBetterPair(const CurrentFit& current,
       return {};
     }
     const std::optional<TermPair> rival = findPair(scored, term);
-    if (rival && best->score.log_evidence - rival->score.log_evidence < kTiedEvidence) {
+    if (rival && best->log_evidence - rival->log_evidence < kTiedEvidence) {
       return {};
     }
     with_single =
@@ -154,9 +158,13 @@ std::optional<FittedPair> TermSearch::findBetterPair(const CurrentFit& current,
 }
 
 std::size_t TermSearch::countSignificant(const std::vector<RankedTerm>& ranked) const {
+  const auto isFitted = [&](std::size_t i) {
+    const TermFinding &one = ranked[i].finding, &best = ranked.front().finding;
+    return one.p_value < (1.0 - kPairShare) * options_.level &&
+           (i < kFittedTerms || best.log_evidence - one.log_evidence < kTiedEvidence);
+  };
   std::size_t count = 0;
-  while (count < std::min(ranked.size(), kFittedTerms) &&
-         ranked[count].finding.p_value < (1.0 - kPairShare) * options_.level) {
+  while (count < std::min(ranked.size(), kFittedAlike) && isFitted(count)) {
     ++count;
   }
   return count;

@@ -7,7 +7,6 @@ namespace twinmap {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::Vector2d;
 using Eigen::VectorXd;
 
 namespace {
@@ -22,7 +21,7 @@ std::vector<TermPair> listPairs(const ScoredCandidates& scored, const std::strin
       const double gain = gains(static_cast<Index>(i), static_cast<Index>(j));
       if (gain > 0.0 && scored.scores[i].visible && scored.scores[j].visible && (is_with(i) || is_with(j)) &&
           scored.candidates[i].term != scored.candidates[j].term) {
-        pairs.push_back({i, j, {}, 1.0});
+        pairs.push_back({i, j, {}});
         pairs.back().score.gain = gain;
       }
     }
@@ -48,8 +47,13 @@ double calcTermEvidence(const LinearizedRecordings& linear, const CurrentFit& fi
     return -kInfinity;
   }
   const double z = estimate / score.stddev;
-  return calcLogEvidence(z * z, score.stddev, std::max(term.candidate.size, std::abs(estimate))) +
+  return calcLogEvidence(z * z, {estimate, score.stddev, term.candidate.size}) +
          calcLogSignEvidence(term.candidate, estimate);
+}
+
+/// What the freedom of a coefficient costs in evidence.
+double calcLogPrior(const TermCandidate& candidate, double estimate, double stddev) {
+  return calcLogEvidence(0.0, {estimate, stddev, candidate.size}) + calcLogSignEvidence(candidate, estimate);
 }
 
 /// The coefficient and the own scales of a term as they are at the start of a fit.
@@ -107,21 +111,19 @@ void describeOfPair(const CurrentFit& current, const ScoredCandidates& scored, I
 /// Estimates, standard deviations and the evidence of both: Laplace's approximation, one after the other.
 void describePair(const CurrentFit& current, const RecordedFeatures& recordings,
                   const ScoredCandidates& scored, Index p, double level, FittedPair& pair) {
-  const LinearizedRecordings linear =
-      RecordingsProblem(pair.fit.experiment, recordings).linearize(pair.fit.point);
   const std::size_t last = pair.fit.terms.size() - 1;
   const FoundTerm &first = pair.fit.terms[last - 1], &second = pair.fit.terms[last];
+  LinearizedRecordings linear = RecordingsProblem(pair.fit.experiment, recordings).linearize(pair.fit.point);
+  for (const FoundTerm* term : {&first, &second}) {
+    linear = addScalePriors(linear, term->first, term->candidate, pair.fit.point);
+    pair.log_evidence += calcScalesEvidence(linear, term->first, term->candidate, pair.fit.point);
+  }
   const CoefficientStddev alone = calcStddev(linear, first.first, second.first);
   const CoefficientStddev of_first = calcStddev(linear, first.first, -1),
                           of_second = calcStddev(linear, second.first, -1);
-  const auto calcSize = [&](const FoundTerm& term) {
-    return std::max(term.candidate.size, std::abs(pair.fit.point[term.first]));
-  };
-  pair.log_evidence = 0.5 * (current.chi_square - pair.fit.chi_square) +
-                      calcLogEvidence(0.0, alone.stated, calcSize(first)) +
-                      calcLogEvidence(0.0, of_second.stated, calcSize(second)) +
-                      calcLogSignEvidence(first.candidate, pair.fit.point[first.first]) +
-                      calcLogSignEvidence(second.candidate, pair.fit.point[second.first]);
+  pair.log_evidence += 0.5 * (current.chi_square - pair.fit.chi_square) +
+                       calcLogPrior(first.candidate, pair.fit.point[first.first], alone.stated) +
+                       calcLogPrior(second.candidate, pair.fit.point[second.first], of_second.stated);
   describeOfPair(current, scored, p, pair, first, of_first, level, pair.first);
   describeOfPair(current, scored, p, pair, second, of_second, level, pair.second);
 }
@@ -136,15 +138,16 @@ std::optional<TermPair> findPair(const ScoredCandidates& scored, const std::stri
   for (std::size_t k = 0; k < std::min(kJudged, pairs.size()); ++k) {
     TermPair pair = pairs[k];
     const TermCandidate &first = scored.candidates[pair.first], &second = scored.candidates[pair.second];
-    pair.score = scored.test->calcJointScore(
-        {static_cast<Index>(pair.first), static_cast<Index>(pair.second)}, Vector2d(first.size, second.size));
+    pair.score =
+        scored.test->calcJointScore({static_cast<Index>(pair.first), static_cast<Index>(pair.second)});
     if (pair.score.estimates.size() == 0) {
       continue;
     }
-    pair.score.log_evidence += calcLogSignEvidence(first, pair.score.estimates[0]) +
-                               calcLogSignEvidence(second, pair.score.estimates[1]);
+    pair.log_evidence = 0.5 * pair.score.gain +
+                        calcLogPrior(first, pair.score.estimates[0], pair.score.stddevs[0]) +
+                        calcLogPrior(second, pair.score.estimates[1], pair.score.stddevs[1]);
     pair.p_value = calcPairPValue(pair.score.gain, tests);
-    if (!best || pair.score.log_evidence > best->score.log_evidence) {
+    if (!best || pair.log_evidence > best->log_evidence) {
       best = pair;
     }
   }

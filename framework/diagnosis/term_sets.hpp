@@ -12,7 +12,8 @@ namespace twinmap {
 struct TermPair {
   std::size_t first = 0, second = 0;  ///< candidates
   ScoreTest::JointScore score;
-  double p_value = 1.0;  ///< of the best of all pairs, where nothing is missing
+  double log_evidence = -kInfinity;  ///< of both against none, by the linear model
+  double p_value = 1.0;              ///< of the best of all pairs, where nothing is missing
 };
 
 /// The pair of the largest evidence by the linear model, its signs as physics has them; of those with the
@@ -23,7 +24,7 @@ std::optional<TermPair> findPair(const ScoredCandidates& scored, const std::stri
 struct FittedPair {
   TermFinding first, second;
   CurrentFit fit;
-  double log_evidence = -kInfinity;
+  double log_evidence = 0.0;
 };
 
 /// None where that fails. p: parameters of the machine before any term; level: of what holds cautiously.

@@ -25,7 +25,7 @@ struct TermCandidate {
   std::string term;     ///< "drag.x": names it; the same of all own scales
   std::string meaning;  ///< "drag: force -c |x_dot| x_dot on x"
   std::string unit;     ///< of the coefficient, coherent SI
-  double size = 1.0;    ///< of a coefficient that matters: the standard deviation of its prior
+  double size = 1.0;    ///< of a coefficient that matters: its prior reaches so far
   /// Whether it takes energy where its coefficient is positive, as friction does.
   bool dissipates = false;
   std::vector<OwnScale> own_scales;  ///< the first one is scanned, others begin at their value
