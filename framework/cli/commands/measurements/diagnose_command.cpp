@@ -6,6 +6,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/study/diagnosis/diagnosis_page.hpp"
