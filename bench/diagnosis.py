@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds `twinmap diagnose` to its bars on eight mechanisms of different kinds and writes a page.
+"""Holds `twinmap diagnose` to its bars on fifteen mechanisms of different kinds and writes a page.
 
 Usage: bench/diagnosis.py STUDY [--terms N] [--tests N] [--nothing N] [--gusts N] [--mechanism NAME ...] [--logs DIR] --out FILE
 
@@ -23,6 +23,13 @@ MECHANISMS = [
     "experiments/mechanisms/end_stops.yaml",
     "experiments/mechanisms/released_pendulum.yaml",
     "experiments/mechanisms/spatial_arm.yaml",
+    "experiments/crane/crane.yaml",
+    "experiments/mechanisms/stick_slip.yaml",
+    "experiments/mechanisms/dry_belt.yaml",
+    "experiments/mechanisms/unbalanced_rotor.yaml",
+    "bench/framework/diagnosis/gantry.yaml",
+    "bench/framework/diagnosis/sprung_beam.yaml",
+    "bench/framework/diagnosis/geared_motor.yaml",
 ]
 LINE = re.compile(
     r"(?P<term>\S+)\s+(?P<tests>\d+) chi2/n\s+(?P<ratio>\S+) first\s+(?P<first>\d+) tied\s+(?P<tied>\d+) "

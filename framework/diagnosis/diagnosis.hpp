@@ -96,8 +96,8 @@ struct Diagnosis {
   ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;
-  /// A process in the place of all terms that were found: where it has more evidence than they have, as the
-  /// random force of wind or of a drive's chatter would.
+  /// A process in the place of all terms that were found: where these leave something unexplained and it has
+  /// more evidence than they have, as the random force of wind or of a drive's chatter would.
   std::optional<Remainder> process;
 
   /// Parameters whose best value before any term is within a hundredth of their bounds' width from a bound;
@@ -126,8 +126,8 @@ constexpr double kTiedEvidence = 3.0;
 /// that, too. Sizes of noise that are unknown are those of the residual, estimated again with what is
 /// found until that stays. Throws ExperimentError as scoreCandidates() does and for an accepted term that is
 /// not a candidate or that the parameters take up, std::runtime_error where nothing can be simulated. Cost:
-/// two posteriors and one for each tied term; a simulation with derivatives for all candidates a step, and
-/// some 40 for the fits.
+/// two posteriors and one for each tied term; one or two simulations with derivatives for all candidates a
+/// step, and some 40 to 80 for the fits.
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options);
 

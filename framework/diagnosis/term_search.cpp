@@ -11,6 +11,7 @@
 namespace twinmap {
 
 using Eigen::Index;
+using Eigen::VectorXd;
 
 namespace {
 
@@ -28,6 +29,12 @@ constexpr double kPairShare = 0.1;
 /// Whether chi-square is no more than three standard deviations above its mean with a term.
 bool isExplainedBy(const CurrentFit& current, const RankedTerm& single) {
   return single.finding.chi_square < current.degrees + 3.0 * std::sqrt(2.0 * current.degrees);
+}
+
+/// Whether a fit ended elsewhere than the linear model said, by more than is noticed.
+bool isBent(const CurrentFit& current, const RankedTerm& one) {
+  const double linear = current.chi_square - one.finding.z * one.finding.z;
+  return one.finding.fitted && std::abs(one.finding.chi_square - linear) > kNoticedChiSquare;
 }
 
 /// Puts a term first.
@@ -70,6 +77,9 @@ DiagnosisStep TermSearch::takeStep(std::size_t number) {
     fitRanked(current, recordings_, scored, shared_, options_.level, ranked[i]);
   }
   std::stable_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(fitted), hasMoreEvidence);
+  if (!is_given && fitted > 0 && isBent(current, ranked.front())) {
+    fitAgain(current, scored, ranked);
+  }
   step.found =
       fitted > 0 && ranked.front().finding.fitted && (is_given || ranked.front().finding.log_evidence > 0.0);
   if (is_given && !step.found) {
@@ -86,6 +96,37 @@ DiagnosisStep TermSearch::takeStep(std::size_t number) {
     takeFirst(current, ranked, step);
   }
   return step;
+}
+
+void TermSearch::fitAgain(const CurrentFit& current, const ScoredCandidates& scored,
+                          std::vector<RankedTerm>& ranked) const {
+  CurrentFit near = current;  // its chi-square is what the terms are held to
+  const VectorXd& best = ranked.front().fitted.point;
+  const auto all = static_cast<Index>(current.experiment.model.parameters.size());
+  near.point.head(all) = best.head(all);
+  near.point.tail(current.point.size() - all) = best.tail(current.point.size() - all);
+  const ScoredCandidates again = scoreCandidates(current.experiment, recordings_, near.point);
+  std::vector<RankedTerm> there = rankTerms(again, near, shared_);
+  there.resize(std::min(there.size(), kFittedTerms), RankedTerm{{}});
+  for (RankedTerm& one : there) {
+    const auto known = std::find_if(ranked.begin(), ranked.end(), [&](const RankedTerm& other) {
+      return other.finding.candidate.term == one.finding.candidate.term;
+    });
+    if (known == ranked.end() || !(known->finding.p_value < (1.0 - kPairShare) * options_.level)) {
+      continue;
+    }
+    one.finding.z = known->finding.z;
+    one.finding.p_value = known->finding.p_value;
+    fitRanked(near, recordings_, again, shared_, options_.level, one);
+    if (one.finding.fitted && (!known->finding.fitted || hasMoreEvidence(one, *known))) {
+      one.finding.shifts = (one.fitted.point.head(shared_) - current.point.head(shared_))
+                               .cwiseQuotient(scored.stddevs.head(shared_));
+      *known = std::move(one);
+    }
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const RankedTerm& a, const RankedTerm& b) {
+    return a.finding.fitted != b.finding.fitted ? a.finding.fitted : hasMoreEvidence(a, b);
+  });
 }
 
 void TermSearch::takeFirst(const CurrentFit& current, const std::vector<RankedTerm>& ranked,

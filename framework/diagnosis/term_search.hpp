@@ -29,6 +29,10 @@ class TermSearch {
   const std::vector<std::vector<RankedTerm>>& getTied() const { return tied_; }
 
  private:
+  /// Scores all candidates once more where the best one fits, without it: there the linear model is near the
+  /// truth. Fits the best of them from there; what ends better takes its place.
+  void fitAgain(const CurrentFit& current, const ScoredCandidates& scored,
+                std::vector<RankedTerm>& ranked) const;
   void takeFirst(const CurrentFit& current, const std::vector<RankedTerm>& ranked, DiagnosisStep& step);
   void takePair(const FittedPair& pair, DiagnosisStep& step);
   std::optional<FittedPair> findBetterPair(const CurrentFit& current, const ScoredCandidates& scored,

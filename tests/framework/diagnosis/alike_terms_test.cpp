@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "framework/base/random/random.hpp"
+#include "framework/base/text/source_location.hpp"
+#include "framework/diagnosis/diagnosis.hpp"
+#include "framework/diagnosis/scored_candidates.hpp"
+#include "framework/diagnosis/term_ranking.hpp"
+#include "tests/framework/diagnosis/measured_cart.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+MatrixXd drawColumns(Index rows, Index cols) {
+  const RandomStream random(3, RandomPurpose::kTestDesign);
+  return MatrixXd::NullaryExpr(rows, cols, [&](Index i, Index j) {
+    return random.calcNormal(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j));
+  });
+}
+
+/// A rotor whose load follows it through a gear of 12 and a shaft that hardly gives.
+const char* const kGear = R"(
+name: gear
+parameters:
+  Jl: {bounds: [0.02, 0.04], unit: kg m2}
+  bm: {bounds: [5e-5, 3e-4], unit: N m s/rad}
+constants: {n: {value: 12, unit: "1"}}
+system:
+  bodies:
+    rotor: {mass: 0.3, inertia: {moments: [1e-4, 1e-4, 1e-4]}, joint: {type: pin, coordinates: [phi]}}
+    load: {mass: 2, inertia: {moments: [Jl, Jl, Jl]}, joint: {type: pin, coordinates: [psi]}}
+  expressions:
+    shaft: 25*(phi/n - psi) + 0.03*(phi_dot/n - psi_dot)
+  force_laws:
+    - {coordinate: phi, force: T - bm*phi_dot - shaft/n}
+    - {coordinate: psi, force: shaft}
+excitation: {T: {unit: N m, sines: [{amplitude: 0.08, frequency: 0.7}, {amplitude: 0.05, frequency: 3.1}]}}
+outputs: {phi: {coordinate: phi}, psi: {coordinate: psi}}
+simulation: {duration: 2}
+features: [{samples: {outputs: [phi, psi], start: 0.02, interval: 0.02, count: 99}}]
+noise: {stddev: {phi: 6e-3, psi: 1e-3}}
+)";
+
+ExperimentSpec readGear(const std::vector<std::string>& overrides) {
+  return readExperiment(parseExperimentTree(kGear, "gear.yaml", overrides));
+}
+
+VectorXd measure(const ExperimentSpec& machine, const VectorXd& point) {
+  const ResponseLayout layout = makeLayout(machine);
+  MatrixXd response(layout.getRowCount(), 1);
+  SampleStatus status;
+  makeTrustedSimulator(machine.model, layout.times)->simulate(point, response, &status);
+  const MatrixXd noisy =
+      addNoise(response, ResponseNoise(machine.noise, layout), {7, RandomPurpose::kTestNoise});
+  return makeExtractor(machine, layout).extract(noisy).col(0);
+}
+
+// The coefficient on the rotor's side is 12^4 times as small as that of the same spring on the load's.
+TEST(AlikeTerms, AreTiedOnBothSidesOfAGear) {
+  const VectorXd point = Eigen::Vector2d(0.03, 2e-4);
+  const ExperimentSpec experiment = readGear({});
+  const RecordedFeatures recordings{
+      makeLayout(experiment),
+      {measure(readGear({"system.force_laws[1].force=shaft - 3e-6*psi^3"}), point)},
+      {}};
+  const RecordingsProblem problem(experiment, recordings);
+  const RecordingFit fit = problem.fit(point);
+  const ScoredCandidates scored =
+      scoreCandidates(experiment, recordings, fit.point, CandidateKinds::kWithoutStates);
+  const CurrentFit current{experiment, fit.point, fit.chi_square, 196.0, {}};
+  double rotor = -kInfinity, load = -kInfinity;
+  for (const RankedTerm& one : rankTerms(scored, current, 2)) {
+    rotor = one.finding.candidate.term == "cubic_spring.phi" ? one.finding.log_evidence : rotor;
+    load = one.finding.candidate.term == "cubic_spring.psi" ? one.finding.log_evidence : load;
+  }
+  EXPECT_GT(load, 10.0);
+  EXPECT_NEAR(rotor, load, kTiedEvidence);
+}
+
+// A coefficient and its scale that make up for each other: with the prior of the scale, the volume of both is
+// the root of the determinant of their covariance, in the scale's prior sd.
+TEST(AlikeTerms, CountTheVolumeOfCoefficientAndScales) {
+  constexpr Index kResiduals = 40;
+  MatrixXd jacobian = drawColumns(kResiduals, 3);
+  jacobian.col(2) = 0.4 * jacobian.col(1) + 0.05 * jacobian.col(2);
+  TermCandidate candidate;
+  candidate.own_scales = {{"speed", "m/s", 2.0, 5.0}};
+  const VectorXd point = Eigen::Vector3d(1.0, 1.0, 2.0);
+  const LinearizedRecordings linear =
+      addScalePriors({VectorXd::Zero(kResiduals), jacobian, {0}}, 1, candidate, point);
+  ASSERT_EQ(linear.residual.size(), kResiduals + 1);
+  EXPECT_EQ(linear.starts.back(), kResiduals);
+  const double prior = 2.0 * std::log(5.0) / std::sqrt(3.0);
+  EXPECT_NEAR(linear.jacobian(kResiduals, 2), 1.0 / prior, 1e-12);
+
+  const double first = jacobian.col(0).squaredNorm();
+  const VectorXd c = jacobian.col(1) - jacobian.col(0) * (jacobian.col(0).dot(jacobian.col(1)) / first);
+  const VectorXd s = jacobian.col(2) - jacobian.col(0) * (jacobian.col(0).dot(jacobian.col(2)) / first);
+  const double cc = c.squaredNorm(), cs = c.dot(s), ss = s.squaredNorm() + 1.0 / (prior * prior);
+  const double determinant = cc * ss - cs * cs;
+  const double coefficient = std::sqrt(ss / determinant);  // its sd, the scale unknown
+  EXPECT_NEAR(std::log(coefficient) + calcScalesEvidence(linear, 1, candidate, point),
+              -0.5 * std::log(determinant) - std::log(prior), 1e-9);
+}
+
+// A torsion spring of the load, which explains all; a force on the cart could be as good.
+TEST(AlikeTerms, AreNotBeatenByAForceThatMayBeAnything) {
+  const std::string kCrane = std::string(TWINMAP_SOURCE_DIR) + "/experiments/crane/crane.yaml";
+  const ExperimentSpec experiment = loadExperiment(kCrane);
+  const ExperimentSpec machine =
+      loadExperiment(kCrane, {"system.force_laws=[{coordinate: y, force: F - k_cubic*y^3}, {coordinate: "
+                              "theta, force: -0.18*theta}]"});
+  VectorXd point(8);
+  point << 2.09, 0.492, 0.42, 112.0, 90.0, 18900.0, 3.04, 0.0213;
+  const Diagnosis diagnosis =
+      diagnose(experiment, {makeLayout(experiment), {measure(machine, point)}, {}}, {});
+  ASSERT_EQ(diagnosis.found, 1U);
+  EXPECT_TRUE(diagnosis.after.isExplained());
+  EXPECT_FALSE(diagnosis.process.has_value());
+  EXPECT_STREQ(diagnosis.getStatus(), "ok");
+}
+
+// A rotor that a bristle brakes: its best fit without it is so far off that the linear model there does not
+// show how well the bristle explains the recording.
+TEST(AlikeTerms, AreFittedFromWhereOneOfThemFits) {
+  const std::string kRotor =
+      std::string(TWINMAP_SOURCE_DIR) + "/experiments/mechanisms/unbalanced_rotor.yaml";
+  const ExperimentSpec experiment = loadExperiment(kRotor);
+  const ExperimentSpec machine =
+      loadExperiment(kRotor, {"system.states={z: {derivative: (angle_dot - abs(angle_dot)*z/(1 + "
+                              "0.5*exp(-(angle_dot/0.21)^2)))/0.033, "
+                              "unit: \"1\"}}",
+                              "system.force_laws=[{coordinate: angle, force: -0.08*z}]"});
+  const VectorXd measured = measure(machine, Eigen::Vector3d(-0.06, 1.7, 0.009));
+  const Diagnosis diagnosis = diagnose(experiment, {makeLayout(experiment), {measured}, {}}, {});
+  ASSERT_EQ(diagnosis.found, 1U);
+  EXPECT_TRUE(diagnosis.after.isExplained());
+  const DiagnosisStep& step = diagnosis.steps.front();
+  std::set<std::string> tied;
+  for (std::size_t i = 0; i < step.tied; ++i) {
+    tied.insert(step.ranked[i].candidate.term);
+  }
+  EXPECT_TRUE(tied.count("lugre.angle"));
+  EXPECT_TRUE(tied.count("presliding.angle"));
+}
+
+}  // namespace
+}  // namespace twinmap
