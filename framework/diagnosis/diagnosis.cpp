@@ -148,9 +148,11 @@ class Diagnoser {
   /// Instead of all terms.
   std::optional<Remainder> findBetterProcess(const ExperimentSpec& without_terms,
                                              const Diagnosis& diagnosis) const {
-    double of_terms = 0.0;
+    // what they explain in the end, less what their freedom has cost each step: terms may have been exchanged
+    double of_terms = 0.5 * (diagnosis.before.posterior.chi_square - diagnosis.after.posterior.chi_square);
     for (std::size_t i = 0; i < diagnosis.found; ++i) {
-      of_terms += diagnosis.steps[i].log_evidence;
+      const DiagnosisStep& step = diagnosis.steps[i];
+      of_terms += step.log_evidence - 0.5 * (step.chi_square - step.ranked.front().chi_square);
     }
     std::optional<Remainder> process =
         findRemainder(without_terms, recordings_, diagnosis.before.posterior.best, shared_);

@@ -37,6 +37,19 @@ bool isBent(const CurrentFit& current, const RankedTerm& one) {
   return one.finding.fitted && std::abs(one.finding.chi_square - linear) > kNoticedChiSquare;
 }
 
+/// Of those that evidence does not tell apart, one that stands out of what remains comes first: the freedom
+/// of another's scales may hide that it is needed.
+void putSteadyFirst(std::vector<RankedTerm>& ranked) {
+  const double best = ranked.front().finding.log_evidence;
+  const auto steady = std::find_if(ranked.begin(), ranked.end(), [best](const RankedTerm& one) {
+    return one.finding.fitted && one.finding.holds_cautiously &&
+           best - one.finding.log_evidence < kTiedEvidence;
+  });
+  if (steady != ranked.end()) {
+    std::rotate(ranked.begin(), steady, steady + 1);
+  }
+}
+
 /// Puts a term first.
 std::size_t takeAccepted(const std::string& term, std::vector<RankedTerm>& ranked) {
   std::vector<std::string> names;
@@ -79,6 +92,9 @@ DiagnosisStep TermSearch::takeStep(std::size_t number) {
   std::stable_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(fitted), hasMoreEvidence);
   if (!is_given && fitted > 0 && isBent(current, ranked.front())) {
     fitAgain(current, scored, ranked);
+  }
+  if (!is_given && fitted > 0) {
+    putSteadyFirst(ranked);
   }
   step.found =
       fitted > 0 && ranked.front().finding.fitted && (is_given || ranked.front().finding.log_evidence > 0.0);

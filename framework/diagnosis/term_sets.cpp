@@ -182,7 +182,8 @@ std::optional<FittedPair> fitPair(const CurrentFit& current, const RecordedFeatu
   both.fit.terms.push_back({first, all});
   both.fit.terms.push_back({scored.candidates[other], all + augmented.added});
   describePair(current, recordings, scored, p, level, both);
-  return both;
+  const bool both_act = std::isfinite(both.first.stddev) && std::isfinite(both.second.stddev);
+  return both_act ? std::optional<FittedPair>(both) : std::nullopt;
 }
 
 CurrentFit fitWithout(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
