@@ -136,23 +136,32 @@ MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins) 
 
 /// Of many parameters, the best basin and those others that are minima. Searches of so many end early
 /// (choosePace), and creep along bent valleys: where they are given up looks like minima beside the one to
-/// which the valley leads. A few iterations more reach a minimum that is near; what does not arrive is none.
-std::vector<Basin> keepMinima(MisfitSurface& surface, std::vector<Basin> basins) {
+/// which the valley leads, or is taken for it. A few iterations more reach a minimum that is near; what does
+/// not arrive is none.
+std::vector<Basin> keepMinima(MisfitSurface& surface, std::vector<Basin> basins, int max_iterations) {
   constexpr int kIterations = 10;  // some three suffice near a minimum
-  if (surface.getDimensions() <= kManyUnknown || basins.size() < 2) {
+  const bool arrived = !basins.empty() && hasArrived(basins.front());
+  const Index first = arrived ? 1 : 0, count = static_cast<Index>(basins.size()) - first;
+  if (surface.getDimensions() <= kManyUnknown || count <= 0) {
     return basins;
   }
-  MatrixXd starts(surface.getDimensions(), static_cast<Index>(basins.size()) - 1);
-  for (Index k = 0; k < starts.cols(); ++k) {
-    starts.col(k) = basins[static_cast<std::size_t>(k) + 1].local.at;
+  MatrixXd starts(surface.getDimensions(), count);
+  for (Index k = 0; k < count; ++k) {
+    starts.col(k) = basins[static_cast<std::size_t>(first + k)].local.at;
   }
+  const int iterations = arrived ? kIterations : max_iterations;
   SearchTeam team(surface, starts);
-  team.setKnown({basins.front()});
-  team.setPace({SearchPace().converged, kIterations, true});
-  team.run(kIterations);
+  if (arrived) {
+    team.setKnown({basins.front()});
+  }
+  team.setPace({SearchPace().converged, iterations, true});
+  team.run(iterations);
   std::vector<LocalSurface> ends{basins.front().local};
   for (LocalSurface& end : team.listEnds()) {
-    if (end.misfit < ends.front().misfit || isMinimum(end)) {
+    if (end.misfit < ends.front().misfit) {
+      std::swap(end, ends.front());
+    }
+    if (calcGainLeft(end) <= SearchPace().converged) {
       ends.push_back(std::move(end));
     }
   }
@@ -304,6 +313,12 @@ bool liesIn(const Basin& basin, const VectorXd& at) {
   return calcDistance(basin, at) < kBasinReach;
 }
 
+bool hasArrived(const Basin& basin) {
+  const LocalSurface& local = basin.local;
+  const double scale = std::max(1.0, local.chi_square / local.degrees);  // as if noise were the residual
+  return calcGainLeft(local) <= scale * choosePace(local.at.size()).converged;
+}
+
 MatrixXd calcBasinCovariance(const MatrixXd& information) {
   const Index u = information.rows();
   return linalg::solveCholesky(
@@ -335,7 +350,7 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
 BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,
                        const BasinSearchOptions& options) {
   BasinSearch found = findEnds(surface, given, seed, options);
-  found.basins = keepMinima(surface, std::move(found.basins));
+  found.basins = keepMinima(surface, std::move(found.basins), options.max_iterations);
   return found;
 }
 

@@ -26,6 +26,9 @@ constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
 /// Whether a point is within kBasinReach standard deviations of a basin's minimum.
 bool liesIn(const Basin& basin, const Eigen::VectorXd& at);
 
+/// Whether a basin's search came to its minimum, as near as searches of so many parameters go (choosePace).
+bool hasArrived(const Basin& basin);
+
 /// (information + that of the box as a normal distribution)^-1, u x u.
 Eigen::MatrixXd calcBasinCovariance(const Eigen::MatrixXd& information);
 

@@ -24,6 +24,9 @@ std::string findObstacle(const PosteriorProblem& problem, MisfitSurface& surface
   if (problem.drawn > kManyUnknown && !areOneBasin(surface, basins)) {
     return "several minima of so many parameters explain the measurement, and only one is sampled";
   }
+  if (problem.drawn > kManyUnknown && !hasArrived(basins.front())) {
+    return "the searches ended on the way to a minimum";
+  }
   // where the first round did, the posterior is what the linear models of the basins say
   const bool is_adapted = sampling.drawn.rounds > 1 && problem.drawn == surface.getDimensions();
   if (sampling.drawn.isReliable() && is_adapted &&

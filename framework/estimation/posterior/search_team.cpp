@@ -109,8 +109,8 @@ SearchPace choosePace(Index dimensions) {
   return dimensions > kManyUnknown ? SearchPace{1.0, 4, true} : SearchPace{};
 }
 
-bool isMinimum(const LocalSurface& local) {
-  return predictGain(local, {}) <= SearchPace().converged;
+double calcGainLeft(const LocalSurface& local) {
+  return predictGain(local, {});
 }
 
 SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const MatrixXd& held)

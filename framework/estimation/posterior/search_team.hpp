@@ -22,8 +22,8 @@ struct SearchPace {
 /// Of more than kManyUnknown a gain of 1.0 is left, as chi-square varies by some ten.
 SearchPace choosePace(Eigen::Index dimensions);
 
-/// Whether no more than SearchPace().converged is left to gain within the bounds.
-bool isMinimum(const LocalSurface& local);
+/// What is left to gain of chi-square within the bounds by the linear model.
+double calcGainLeft(const LocalSurface& local);
 
 /// Searches for minima of chi-square that go side by side, by Levenberg and Marquardt's method: an iteration
 /// is a batch of simulations, three dampings for each search or one where its linear model held the last
