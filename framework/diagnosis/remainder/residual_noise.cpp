@@ -71,9 +71,8 @@ std::string describeSizes(const NoiseSpec& stated, const NoiseSpec& sized) {
   std::string text;
   for (std::size_t i = 0; i < stated.stddev.size(); ++i) {
     if (stated.stddev[i].stddev.unknown) {
-      text +=
-          fmt::format("{}{} ({})", text.empty() ? "" : ", ",
-                      toShortText(sized.stddev[i].stddev, 3), stated.stddev[i].name.text);
+      text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", toShortText(sized.stddev[i].stddev, 3),
+                          stated.stddev[i].name.text);
     }
   }
   return text;
