@@ -142,8 +142,7 @@ void LanePacket::beginAfter(int lane) {
   }
   const bool is_event = l.mode == Mode::kEvent;
   if (arrays_.proposed[lane] > 0.0 && (l.phase > 0 || is_event)) {
-    if (!is_event) {  // a phase may be so short that its first step is cut: the next may grow as if it were
-                      // not
+    if (!is_event) {  // where the phase is so short that it cuts this step, the next may be as long
       const double length = arrays_.phase_end[lane] - arrays_.time[lane];
       arrays_.growth[lane] = kLargestGrowth * std::max(1.0, arrays_.proposed[lane] / length);
     }
