@@ -121,9 +121,6 @@ class Diagnoser {
       const CurrentFit& last = fits[diagnosis.found];
       const RecordingsProblem problem(last.experiment, recordings_);
       diagnosis.after = explain(problem, last.point, makeFittedOptions());
-      if (!diagnosis.after.posterior.isReliable()) {  // it may have more basins than that of the fit
-        diagnosis.after = explain(problem, last.point, options_.posterior);
-      }
       DiagnosisStep& step = diagnosis.steps[diagnosis.found - 1];
       if (!options_.accepted.empty() || diagnosis.after.isExplained() || holdsCautiously(step)) {
         break;
