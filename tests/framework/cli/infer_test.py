@@ -373,7 +373,7 @@ class WrongUsage(InferCase):
         self.expect(self.folder / "nothing", self.measurement, code=1, text="does not exist")
         self.expect(self.run_folder, self.measurement, "--set", "k=1", code=2, text="is not an input")
         self.expect(self.run_folder, self.measurement, "--set", "k", code=2, text="NAME=NUMBER")
-        self.expect(self.measurement, self.measurement, code=1, text="m.csv")
+        self.expect(self.measurement, self.measurement, code=2, text="m.csv: is a recording")
 
 
 class Roles(RunTestCase):
