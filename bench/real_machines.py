@@ -41,7 +41,7 @@ MACHINES = [
         [10, 15],
         {"M": "95.11", "Fv": "203.5", "coulomb_q": "20.39", "constant_force_q": "3.16"},
         ["coulomb.q", "constant_force.q"],
-        """Friction and an offset are found, but with a gain of the voltage, which nothing on the machine has. It may stand in for the controller's sample of 1 ms: the controller turns 1 ms at 0.1 m/s into 4 V. Windows of 5 s with a noise of 1e-6 m and 0.02 V found `delay.q` of 1.0 ms first, then a friction of 19.8 N, a force of 2.76 N, M 89.2 kg and Fv 188 N s/m, again with a gain, of 6 %. With all three terms the posterior is not reliable: no corrected parameters, and predictions are worse.""",
+        """Friction is found first, then a constant force, then a gain of the voltage, which nothing on the machine has: the measured voltage is larger than that of the loop at the same motion. If it is the loop's own gain that differs, forces are larger by as much: the first window alone, with these terms, is explained with M 86.3 kg, Fv 159 N s/m and a friction of 20.7 N, which times the gain of 1.098 are 94.8, 175 and 22.7, close to the published ones. Of both windows together the posterior is not reliable: no corrected parameters, and predictions are worse.""",
     ),
     Machine(
         "fork",
@@ -88,7 +88,7 @@ MACHINES = [
             "coulomb_q2": "0.19",
         },
         ["coulomb.q1", "coulomb.q2", "delay.tau1", "delay.tau2"],
-        """Friction is missing: the shoulder's is named, as one of low speed; damping takes up the elbow's, a tilt and a spring stand in for the rest. Sums of masses and inertias come near the published ones, I2 + S2^2/m2 at 0.0502 (0.0509) among them. Delays of -20 and 12 ms, which others saw between channels, are not found; given friction and delays of both torques, the posterior is not reliable (chi-square 4164).""",
+        """Friction is missing: the shoulder's is named, as one of low speed; damping takes up the elbow's, an offset and a spring stand in for the rest. Sums of masses and inertias come near the published ones, I2 + S2^2/m2 at 0.0502 (0.0509) among them. Delays of -20 and 12 ms, which others saw between channels, are not found; given friction and delays of both torques, the posterior is not reliable (chi-square 4164).""",
     ),
     Machine(
         "drone",
