@@ -117,11 +117,12 @@ void setBounds(std::size_t parameter, const Bounds& bounds, ExperimentSpec& expe
   }
 }
 
-AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<TermCandidate>& candidates) {
+AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<TermCandidate>& candidates,
+                           double share) {
   AugmentedExperiment augmented{experiment, static_cast<Eigen::Index>(candidates.size())};
   for (const TermCandidate& candidate : candidates) {
     const std::string name = makeParameterName(augmented.experiment, "missing." + candidate.term);
-    addParameter(makeCoefficient(name, candidate, candidate.size), augmented.experiment);
+    addParameter(makeCoefficient(name, candidate, share * candidate.size), augmented.experiment);
     std::vector<std::string> scales;
     for (const OwnScale& scale : candidate.own_scales) {
       scales.push_back(toText(scale.value));

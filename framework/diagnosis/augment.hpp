@@ -16,8 +16,10 @@ struct AugmentedExperiment {
   Eigen::Index added = 0;  ///< parameters behind those that were there
 };
 
-/// All candidates at once, for their derivatives at coefficients of 0: own scales are numbers.
-AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<TermCandidate>& candidates);
+/// All candidates at once, for their derivatives at coefficients of 0: own scales are numbers. share: of a
+/// coefficient's size, the half width of its bounds, by which the tolerance of its derivatives goes.
+AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<TermCandidate>& candidates,
+                           double share = 1.0);
 
 /// One term, its own scales parameters as well; no candidate of the experiment any more. largest: of its
 /// coefficient, on either side. The parameters have the names of makeParameterName().

@@ -17,6 +17,11 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Of a coefficient's size, what its derivatives are accurate for. On 19 mechanisms scores and their standard
+/// deviations move by less than 1.5 % against derivatives accurate for all of it, most by less than 0.1 %;
+/// where a term has kinks (clipping, a dead zone, a stop) steps are up to three times as long.
+constexpr double kAccurateShare = 1e-4;
+
 /// Of the model of a recording.
 ModelSizes calcSizes(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                      const VectorXd& point, std::size_t recording) {
@@ -116,7 +121,7 @@ void setTermStddevs(const LinearizedRecordings& recorded, Index first, const Ter
 void appendDerivatives(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                        const VectorXd& point, const std::vector<TermCandidate>& candidates,
                        std::vector<ParameterSpec>& unknown, LinearizedRecordings& all, MatrixXd& terms) {
-  const AugmentedExperiment augmented = addAll(experiment, candidates);
+  const AugmentedExperiment augmented = addAll(experiment, candidates, kAccurateShare);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   const RecordingsProblem problem(augmented.experiment, recordings);
   LinearizedRecordings linear = problem.linearize(insertAdded(point, p, VectorXd::Zero(augmented.added)));

@@ -8,6 +8,7 @@
 namespace twinmap::lanes {
 namespace {
 
+using program::Differentiator;
 using program::Recorder;
 using program::Seed;
 using program::Symbol;
@@ -45,9 +46,8 @@ void append(const std::vector<Symbol>& more, std::vector<Symbol>& symbols) {
 
 /// The derivatives of the outputs in direction j.
 std::vector<Symbol> calcOutputTangents(Recorder& recorder, const Equations& equations,
-                                       const std::vector<int>& directions, int j) {
-  std::vector<Symbol> tangents =
-      calcTangents(equations.outputs, makeSeeds(recorder, equations, directions, j));
+                                       const std::vector<int>& directions, int j, Differentiator& outputs) {
+  std::vector<Symbol> tangents = outputs.calcTangents(makeSeeds(recorder, equations, directions, j));
   for (std::size_t i = 0; i < equations.output_delays.size(); ++i) {
     if (const int delay = equations.output_delays[i]; delay >= 0) {
       tangents[i] = calcTangents({equations.outputs[i]}, makeDelayedSeeds(recorder, equations, directions, j,
@@ -64,12 +64,12 @@ class Linearization {
   Linearization(Recorder& recorder, const std::vector<Symbol>& values, int states)
       : recorder_(recorder), values_(values), states_(states) {
     for (int i = 0; i < states; ++i) {
-      by_state_.push_back(calcTangents(values, {{recorder.state(i), 1.0}}));
+      by_state_.push_back(values_.calcTangents({{recorder.state(i), 1.0}}));
     }
   }
 
   std::vector<Symbol> calcChanges(int parameter, int j) {
-    std::vector<Symbol> changes = calcTangents(values_, {{recorder_.parameter(parameter), 1.0}});
+    std::vector<Symbol> changes = values_.calcTangents({{recorder_.parameter(parameter), 1.0}});
     for (int i = 0; i < states_; ++i) {
       const Symbol sensitivity = recorder_.state(states_ * (1 + j) + i);
       for (std::size_t row = 0; row < changes.size(); ++row) {
@@ -81,7 +81,7 @@ class Linearization {
 
  private:
   Recorder& recorder_;
-  const std::vector<Symbol>& values_;
+  Differentiator values_;
   const int states_;
   std::vector<std::vector<Symbol>> by_state_;  ///< derivatives of the values, by state
 };
@@ -94,21 +94,22 @@ void appendSensitivities(Recorder& recorder, const Equations& equations, const s
                          std::vector<Symbol>& rows, std::vector<Symbol>& outputs) {
   const auto states = static_cast<std::size_t>(equations.counts.states);
   const bool is_delayed = !equations.delays.empty();  // an output of another time has derivatives of its own
+  Differentiator outputs_alone(equations.outputs);
   if (directions.size() > std::max(kFewDirections, kDirectionsPerState * states)) {
     Linearization motion(recorder, equations.derivatives, equations.counts.states);
     Linearization seen(recorder, equations.outputs, equations.counts.states);
     for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
       append(motion.calcChanges(directions[j], j), rows);
-      append(is_delayed ? calcOutputTangents(recorder, equations, directions, j)
+      append(is_delayed ? calcOutputTangents(recorder, equations, directions, j, outputs_alone)
                         : seen.calcChanges(directions[j], j),
              outputs);
     }
     return;
   }
+  Differentiator rates(equations.derivatives);
   for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
-    const std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
-    append(calcTangents(equations.derivatives, seeds), rows);
-    append(calcOutputTangents(recorder, equations, directions, j), outputs);
+    append(rates.calcTangents(makeSeeds(recorder, equations, directions, j)), rows);
+    append(calcOutputTangents(recorder, equations, directions, j, outputs_alone), outputs);
   }
 }
 
@@ -119,13 +120,14 @@ program::Program compileJump(Recorder& recorder, const Equations& equations, con
   if (rows.empty()) {
     return {};
   }
+  Differentiator behind(jumps);
   for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
     std::vector<Seed> seeds = makeSeeds(recorder, equations, directions, j);
     seeds.push_back({recorder.time(), recorder.phaseInput(counts.phase_inputs + j)});
     for (const Passed& passed : equations.passed) {
       seeds.push_back({passed.value, calcTangents({passed.as}, seeds)[0]});
     }
-    append(calcTangents(jumps, seeds), rows);
+    append(behind.calcTangents(seeds), rows);
   }
   counts.phase_inputs += static_cast<int>(directions.size());
   return compile(recorder, rows, counts);
@@ -139,9 +141,10 @@ void compileEvents(Recorder& recorder, const Equations& equations, const std::ve
   for (int i = 0; i < equations.counts.states; ++i) {
     flow.push_back({recorder.state(i), equations.derivatives[i]});
   }
-  std::vector<Symbol> changes = calcTangents(equations.guards, flow);
+  Differentiator guards(equations.guards);
+  std::vector<Symbol> changes = guards.calcTangents(flow);
   for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
-    append(calcTangents(equations.guards, makeSeeds(recorder, equations, directions, j)), changes);
+    append(guards.calcTangents(makeSeeds(recorder, equations, directions, j)), changes);
   }
   std::vector<Symbol> looked_at = equations.guards;
   append(equations.dips, looked_at);
@@ -162,8 +165,9 @@ Problem makeProblem(Recorder& recorder, const Equations& equations, const std::v
   std::vector<Symbol> rows = equations.derivatives, outputs = equations.outputs,
                       projection = equations.projection;
   appendSensitivities(recorder, equations, directions, rows, outputs);
+  Differentiator projected(equations.projection);
   for (int j = 0; j < static_cast<int>(directions.size()); ++j) {
-    append(calcTangents(equations.projection, makeSeeds(recorder, equations, directions, j)), projection);
+    append(projected.calcTangents(makeSeeds(recorder, equations, directions, j)), projection);
   }
   append(equations.pivots, rows);
   program::InputCounts counts = equations.counts;

@@ -50,60 +50,6 @@ Symbol calcTernary(Operation operation, Symbol a, Symbol db, Symbol dc) {
   }
 }
 
-/// One direction through the graph. Operands stand before their results, so that one pass suffices.
-class ForwardMode {
- public:
-  ForwardMode(Recorder& recorder, const std::vector<Seed>& seeds) : recorder_(recorder) {
-    for (const Seed& seed : seeds) {
-      if (seed.variable.isLiteral()) {
-        continue;
-      }
-      const std::size_t node = seed.variable.getNode();
-      tangents_.resize(std::max(tangents_.size(), node + 1));
-      tangents_[node] = seed.tangent;
-      seeded_.resize(std::max(seeded_.size(), node + 1));
-      seeded_[node] = true;
-    }
-  }
-
-  /// Inputs and seeded values keep their seed or 0.
-  void run(const std::vector<char>& needed) {
-    tangents_.resize(std::max(tangents_.size(), needed.size()));
-    for (std::size_t node = 0; node < needed.size(); ++node) {
-      const bool seeded = node < seeded_.size() && seeded_[node];
-      if (needed[node] && !seeded && countOperands(recorder_.getNodes()[node].operation) > 0) {
-        tangents_[node] = calcTangent(static_cast<int>(node));
-      }
-    }
-  }
-
-  Symbol getTangent(Symbol value) const {
-    return value.isLiteral() ? Symbol(0.0) : tangents_[value.getNode()];
-  }
-
- private:
-  Symbol calcTangent(int node) {
-    const Node n = recorder_.getNodes()[node];  // a copy: recording moves the nodes
-    const int count = countOperands(n.operation);
-    const Symbol result = recorder_.getSymbol(node);
-    const Symbol a = recorder_.getSymbol(n.a);
-    const Symbol da = tangents_[n.a];
-    if (count == 1) {
-      return da.isLiteral(0.0) ? da : calcSlope(n.operation, a, result) * da;
-    }
-    const Symbol db = tangents_[n.b];
-    if (count == 3) {
-      return calcTernary(n.operation, a, db, tangents_[n.c]);
-    }
-    const bool constant = da.isLiteral(0.0) && db.isLiteral(0.0);
-    return constant ? Symbol(0.0) : calcBinary(n.operation, a, da, recorder_.getSymbol(n.b), db, result);
-  }
-
-  Recorder& recorder_;
-  std::vector<Symbol> tangents_;
-  std::vector<bool> seeded_;
-};
-
 Recorder* findRecorder(const std::vector<Symbol>& values) {
   for (const Symbol& value : values) {
     if (!value.isLiteral()) {
@@ -113,45 +59,104 @@ Recorder* findRecorder(const std::vector<Symbol>& values) {
   return nullptr;
 }
 
-/// For each node up to the last value: whether a value depends on it.
-std::vector<char> findNeeded(const Recorder& recorder, const std::vector<Symbol>& values) {
-  std::vector<char> needed(recorder.getNodes().size(), false);
+/// The operations that values depend on, operands before their results.
+std::vector<int> listOperations(const Recorder& recorder, const std::vector<Symbol>& values) {
+  int last = -1;
+  for (const Symbol& value : values) {
+    last = value.isLiteral() ? last : std::max(last, value.getNode());
+  }
+  std::vector<char> needed(static_cast<std::size_t>(last + 1), false);
   for (const Symbol& value : values) {
     if (!value.isLiteral()) {
       needed[value.getNode()] = true;
     }
   }
-  for (int i = static_cast<int>(needed.size()) - 1; i >= 0; --i) {
+  std::vector<int> operations;
+  for (int i = last; i >= 0; --i) {
     const Node& node = recorder.getNodes()[i];
     const int operands[] = {node.a, node.b, node.c};
-    for (int k = 0; needed[i] && k < countOperands(node.operation); ++k) {
-      needed[operands[k]] = true;
+    const int count = countOperands(node.operation);
+    if (needed[i] && count > 0) {
+      operations.push_back(i);
+      for (int k = 0; k < count; ++k) {
+        needed[operands[k]] = true;
+      }
     }
   }
-  return needed;
+  std::reverse(operations.begin(), operations.end());
+  return operations;
 }
 
 }  // namespace
 
-std::vector<Symbol> calcTangents(const std::vector<Symbol>& values, const std::vector<Seed>& seeds) {
-  std::vector<Symbol> result(values.size());
-  Recorder* const recorder = findRecorder(values);
-  if (recorder == nullptr) {
-    return result;
+Differentiator::Differentiator(std::vector<Symbol> values)
+    : values_(std::move(values)), recorder_(findRecorder(values_)) {
+  if (recorder_ != nullptr) {
+    operations_ = listOperations(*recorder_, values_);
+    tangents_.resize(recorder_->getNodes().size());
+    is_seeded_.resize(tangents_.size());
   }
-  ForwardMode mode(*recorder, seeds);
-  mode.run(findNeeded(*recorder, values));
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    result[i] = mode.getTangent(values[i]);
+}
+
+std::vector<Symbol> Differentiator::calcTangents(const std::vector<Seed>& seeds) {
+  std::vector<int> changed;
+  for (const Seed& seed : seeds) {
+    // what was recorded after the values is none of what they depend on
+    if (!seed.variable.isLiteral() && seed.variable.getNode() < static_cast<int>(tangents_.size())) {
+      changed.push_back(seed.variable.getNode());
+      tangents_[changed.back()] = seed.tangent;
+      is_seeded_[changed.back()] = true;
+    }
+  }
+  for (const int node : operations_) {
+    if (!is_seeded_[node]) {
+      if (const Symbol tangent = calcTangent(node); !tangent.isLiteral(0.0)) {
+        tangents_[node] = tangent;
+        changed.push_back(node);
+      }
+    }
+  }
+  std::vector<Symbol> result;
+  for (const Symbol& value : values_) {
+    result.push_back(value.isLiteral() ? Symbol(0.0) : tangents_[value.getNode()]);
+  }
+  for (const int node : changed) {
+    tangents_[node] = Symbol(0.0);
+    is_seeded_[node] = false;
   }
   return result;
 }
 
+Symbol Differentiator::calcTangent(int node) const {
+  const Node n = recorder_->getNodes()[node];  // a copy: recording moves the nodes
+  const int count = countOperands(n.operation);
+  const Symbol da = tangents_[n.a];
+  const Symbol db = count > 1 ? tangents_[n.b] : Symbol(0.0);
+  const Symbol dc = count > 2 ? tangents_[n.c] : Symbol(0.0);
+  if (da.isLiteral(0.0) && db.isLiteral(0.0) && dc.isLiteral(0.0)) {
+    return 0.0;
+  }
+  const Symbol a = recorder_->getSymbol(n.a);
+  switch (count) {
+    case 1:
+      return calcSlope(n.operation, a, recorder_->getSymbol(node)) * da;
+    case 2:
+      return calcBinary(n.operation, a, da, recorder_->getSymbol(n.b), db, recorder_->getSymbol(node));
+    default:
+      return calcTernary(n.operation, a, db, dc);
+  }
+}
+
+std::vector<Symbol> calcTangents(const std::vector<Symbol>& values, const std::vector<Seed>& seeds) {
+  return Differentiator(values).calcTangents(seeds);
+}
+
 std::vector<std::vector<Symbol>> calcJacobian(const std::vector<Symbol>& values,
                                               const std::vector<Symbol>& variables) {
+  Differentiator differentiator(values);
   std::vector<std::vector<Symbol>> columns;
   for (const Symbol& variable : variables) {
-    columns.push_back(calcTangents(values, {{variable, 1.0}}));
+    columns.push_back(differentiator.calcTangents({{variable, 1.0}}));
   }
   return columns;
 }

@@ -114,7 +114,7 @@ TEST(Diagnosis, WidensIntervalsByWhatRemains) {
   ASSERT_TRUE(diagnosis.remainder.has_value());
   EXPECT_GT(diagnosis.remainder->log_evidence, 10.0);
   for (Eigen::Index i = 0; i < 3; ++i) {
-    EXPECT_GT(diagnosis.remainder->stddevs[i], diagnosis.after.posterior.stddev[i]);
+    EXPECT_GT(diagnosis.remainder->stddevs[i], diagnosis.before.posterior.stddev[i]);
     EXPECT_NEAR(diagnosis.remainder->mean[i], kTrueCart[i], 4.0 * diagnosis.remainder->stddevs[i]);
   }
 }
