@@ -33,7 +33,8 @@ MECHANISMS = [
 ]
 LINE = re.compile(
     r"(?P<term>\S+)\s+(?P<tests>\d+) chi2/n\s+(?P<ratio>\S+) first\s+(?P<first>\d+) tied\s+(?P<tied>\d+) "
-    r"nothing\s+(?P<nothing>\d+) alike (?P<alike_named>\d+)/(?P<alike>\d+) second (?P<resolved>\d+)/(?P<advised>\d+) "
+    r"nothing\s+(?P<nothing>\d+) alike (?P<alike_named>\d+)/(?P<alike>\d+) second (?P<advised>\d+) apart (?P<apart>\d+) "
+    r"alone (?P<alone>\d+) "
     r"\| held (?P<before>[\d. ]*) -> (?P<after>[\d. ]*) \| worst z \S+ -> \S+ \| (?P<seconds>\S+) s"
     r"( \| scaled (?P<scaled>[\d. ]*))? \| ?(?P<found>.*)"
 )
@@ -63,8 +64,9 @@ chi-square, each measured once and diagnosed ([how](../how-to/find-what-a-model-
 p of n cases has a standard error of the root of p(1-p)/n. First or tied: the term is named, alone or among
 those that one test does not tell apart. Alike: of the cases in which some other term does the same to within what evidence could tell,
 those in which the missing one is named among several. Second test: of those whose advice is one of another amplitude, those in which
-both together name the missing term alone. Random force: named as a force on its coordinate. Coverage: share of the true parameters within their 95 % intervals, of the model alone and after
-the diagnosis. Time: of a processor, a diagnosis with both posteriors.
+both together name the missing term and rule out all that it was tied with; alone: and name no other either. Random force: named as a force
+on its coordinate. Coverage: share of the true parameters within their 95 % intervals, of the model alone and after the diagnosis. Time: of
+a processor, a diagnosis with both posteriors.
 
 """
 
@@ -115,7 +117,7 @@ def make_row(name, missing, nothing, processes):
     seconds = sum(int(r["tests"]) * float(r["seconds"]) for r in missing) / max(1, tests)
     return (
         f"| {name} | {tied} of {tests} | {none} of {sound} | {of('alike_named', 'alike', missing)} | "
-        f"{of('resolved', 'advised', missing)} | {of('tied', 'tests', processes)} | {coverage(missing, 'before'):.2f} | "
+        f"{of('apart', 'advised', missing)} | {of('alone', 'advised', missing)} | {of('tied', 'tests', processes)} | {coverage(missing, 'before'):.2f} | "
         f"{coverage(missing, 'after'):.2f} | {coverage(nothing, 'after'):.2f} | {seconds:.1f} |\n"
     )
 
@@ -150,7 +152,7 @@ def main():
     if arguments.logs:
         arguments.logs.mkdir(parents=True, exist_ok=True)
     chosen = [file for file in MECHANISMS if not arguments.mechanism or Path(file).stem in arguments.mechanism]
-    table = "| mechanism | first or tied | nothing found where nothing is missing | alike | second test | random force | coverage before | after | nothing missing | s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
+    table = "| mechanism | first or tied | nothing found where nothing is missing | alike | second test | alone | random force | coverage before | after | nothing missing | s |\n|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n"
     all_missing, all_nothing, all_processes, missed = [], [], [], []
     for file in chosen:
         names = [row["term"] for row in run(arguments.study, file, [], 0, arguments.logs)]

@@ -5,10 +5,11 @@
 // often the 95 % intervals hold before and after, and the largest error in standard deviations. "scaled":
 // before, with the residual's variance in the place of the noise's. "alike":
 // cases in which some other term does the same to within what evidence could tell, and of these how many name
-// the missing one among several. "second": how many of those that advise a test at another amplitude, and of
-// these how many name the missing term alone when both tests are diagnosed together. Without terms: nothing
-// missing, then each candidate that is visible at the centre of the box. "process.x": a random force on x,
-// named where the diagnosis says so in the place of all terms, or of what remains.
+// the missing one among several. "second": how many of those that advise a test at another amplitude; of
+// these, how many name the missing term when both tests are diagnosed together and no longer those that it
+// was tied with ("apart"), and how many name it alone. Without terms: nothing missing, then each candidate
+// that is visible at the centre of the box. "process.x": a random force on x, named where the diagnosis says
+// so in the place of all terms, or of what remains.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -46,7 +47,7 @@ using Eigen::VectorXd;
 /// Of many diagnoses with one term missing.
 struct Tally {
   int tests = 0, first = 0, tied = 0, nothing = 0;
-  int alike = 0, alike_named = 0, advised = 0, resolved = 0;
+  int alike = 0, alike_named = 0, advised = 0, apart = 0, alone = 0;
   std::map<std::string, int> found;
   VectorXd held_before, held_after;  ///< p, counts
   VectorXd held_scaled;              ///< of `before`, with the noise taken to be as large as the residual
@@ -237,7 +238,7 @@ class Study {
     if (names && diagnosis.steps.front().tied > 1 &&
         std::sscanf(diagnosis.steps.front().advice.c_str(), "a second test at %lf times", &factor) == 1) {
       ++tally.advised;
-      tally.resolved += isResolved(machine.experiment, point, test, term, *measured, factor) ? 1 : 0;
+      countSecond(diagnosis, diagnoseBoth(machine.experiment, point, test, *measured, factor), term, tally);
     }
   }
 
@@ -259,21 +260,35 @@ class Study {
     return extractor_.extract(noisy).col(0);
   }
 
-  /// Whether the test that was made and one with all signals `factor` times as large name the term alone.
-  bool isResolved(ExperimentSpec machine, const VectorXd& point, int test, const std::string& term,
-                  const VectorXd& first, double factor) const {
+  /// Of the test that was made and one with all signals `factor` times as large.
+  std::optional<Diagnosis> diagnoseBoth(ExperimentSpec machine, const VectorXd& point, int test,
+                                        const VectorXd& first, double factor) const {
     scaleSignals(machine.model, factor);
     const std::optional<VectorXd> second = measure(machine, point, test, 500);
     if (!second) {
-      return false;
+      return {};
     }
     ExperimentSpec larger = experiment_;
     scaleSignals(larger.model, factor);
     const ExperimentSpec both = combineTrials(experiment_, {{"first", experiment_}, {"second", larger}});
     RecordedFeatures recordings = makeEmptyRecordings(both, {});
     recordings.features = {first, *second};
-    const Diagnosis diagnosis = diagnose(both, recordings, {});
-    return namesAmongTied(diagnosis, term) && diagnosis.steps.front().tied == 1;
+    return diagnose(both, recordings, {});
+  }
+
+  static void countSecond(const Diagnosis& one, const std::optional<Diagnosis>& both, const std::string& term,
+                          Tally& tally) {
+    if (!both || !namesAmongTied(*both, term)) {
+      return;
+    }
+    const DiagnosisStep& step = one.steps.front();
+    bool apart = true;
+    for (std::size_t i = 0; i < step.tied; ++i) {
+      const std::string& other = step.ranked[i].candidate.term;
+      apart = apart && (other == term || !namesAmongTied(*both, other));
+    }
+    tally.apart += apart ? 1 : 0;
+    tally.alone += both->steps.front().tied == 1 ? 1 : 0;
   }
 
   static bool isProcess(const std::string& term) { return term.rfind("process.", 0) == 0; }
@@ -381,11 +396,12 @@ void print(const std::string& term, Tally tally) {
   std::sort(tally.ratios.begin(), tally.ratios.end());
   const double ratio = tally.ratios.empty() ? 0.0 : tally.ratios[tally.ratios.size() / 2];
   fmt::print(
-      "{:28} {:3} chi2/n {:5.2f} first {:3} tied {:3} nothing {:3} alike {}/{} second {}/{} | held {} -> {} "
+      "{:28} {:3} chi2/n {:5.2f} first {:3} tied {:3} nothing {:3} alike {}/{} second {} apart {} alone "
+      "{} | held {} -> {} "
       "| "
       "worst z {:.0f} -> {:.1f} | {:.2f} s | scaled {} |{}\n",
       term, tally.tests, ratio, tally.first, tally.tied, tally.nothing, tally.alike_named, tally.alike,
-      tally.resolved, tally.advised, describeHeld(tally.held_before, tally.counted_before),
+      tally.advised, tally.apart, tally.alone, describeHeld(tally.held_before, tally.counted_before),
       describeHeld(tally.held_after, tally.counted_after), tally.worst_before, tally.worst_after,
       tally.seconds / std::max(1, tally.tests), describeHeld(tally.held_scaled, tally.counted_before), names);
   std::fflush(stdout);

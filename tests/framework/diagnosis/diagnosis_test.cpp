@@ -96,11 +96,10 @@ TEST(Diagnosis, NamesRivalsOfATermThatMayStandInForOthers) {
   EXPECT_TRUE(named.count("coulomb.x"));
 }
 
+constexpr const char* kSwept = "F - k3*x^3 + 0.05*sin(9*t^2)";
+
 TEST(Diagnosis, TestsTermsOfTheFile) {
-  const std::string force = "F - k3*x^3 + 0.05*sin(9*t^2)";
-  const Diagnosis without = diagnoseCart({measureCart(force)});
-  EXPECT_STREQ(without.getStatus(), "model_incomplete");
-  const Diagnosis with = diagnoseCart({measureCart(force)}, {},
+  const Diagnosis with = diagnoseCart({measureCart(kSwept)}, {},
                                       {"candidates.sweep={coordinate: x, force: sin(9*t^2), unit: N}"});
   EXPECT_STREQ(with.getStatus(), "ok");
   EXPECT_EQ(with.listTerms(), std::vector<std::string>{"sweep"});
@@ -110,7 +109,8 @@ TEST(Diagnosis, TestsTermsOfTheFile) {
 
 // What remains is a force, and with it the intervals hold again.
 TEST(Diagnosis, WidensIntervalsByWhatRemains) {
-  const Diagnosis diagnosis = diagnoseCart({measureCart("F - k3*x^3 + 0.05*sin(9*t^2)")});
+  const Diagnosis diagnosis = diagnoseCart({measureCart(kSwept)});
+  EXPECT_STREQ(diagnosis.getStatus(), "model_incomplete");
   ASSERT_TRUE(diagnosis.remainder.has_value());
   EXPECT_GT(diagnosis.remainder->log_evidence, 10.0);
   for (Eigen::Index i = 0; i < 3; ++i) {
