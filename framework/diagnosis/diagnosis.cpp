@@ -46,6 +46,7 @@ AveragedEstimate mix(const std::vector<SimulatorPosterior>& posteriors, const st
     mixed.weights.conservativeResize(before + count);
     mixed.weights.tail(count) = weights[i] * posteriors[i].weights;
   }
+  mixed.models = posteriors.size();
   mixed.weights /= mixed.weights.sum();
   mixed.mean = importance::calcMean({mixed.draws, mixed.weights});
   mixed.stddev = importance::calcCovariance({mixed.draws, mixed.weights}).diagonal().cwiseSqrt();
@@ -94,16 +95,16 @@ class Diagnoser {
     return options;
   }
 
-  /// The shared parameters over all terms tied with the last one found.
+  /// The shared parameters over what was found and all that the recordings do not tell from it.
   void average(const TermSearch& search, Diagnosis& diagnosis) const {
     std::vector<SimulatorPosterior> posteriors{diagnosis.after.posterior};
     std::vector<double> evidence{1.0};
-    const std::vector<RankedTerm> none;
-    const std::vector<RankedTerm>& tied = diagnosis.found > 0 ? search.getTied()[diagnosis.found - 1] : none;
-    for (std::size_t i = 1; i < tied.size(); ++i) {
-      const RecordingsProblem problem(tied[i].fitted.augmented.experiment, recordings_);
-      posteriors.push_back(samplePosterior(problem.get(), tied[i].fitted.point, makeFittedOptions()));
-      evidence.push_back(std::exp(tied[i].finding.log_evidence - tied.front().finding.log_evidence));
+    if (diagnosis.found > 0) {
+      for (const AlternativeFit& other : search.getAlternatives()[diagnosis.found - 1]) {
+        const RecordingsProblem problem(other.experiment, recordings_);
+        posteriors.push_back(samplePosterior(problem.get(), other.point, makeFittedOptions()));
+        evidence.push_back(std::exp(other.log_evidence));
+      }
     }
     diagnosis.averaged = mix(posteriors, evidence, shared_);
   }

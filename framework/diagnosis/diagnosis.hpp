@@ -76,6 +76,7 @@ struct AveragedEstimate {
   Eigen::VectorXd mean, stddev;  ///< p; empty where a posterior is not reliable
   Eigen::MatrixXd draws;         ///< p x n
   Eigen::VectorXd weights;       ///< n
+  std::size_t models = 0;        ///< averaged over
 
   bool isGiven() const { return mean.size() > 0; }
   /// p x k, at probabilities (k).
@@ -92,7 +93,7 @@ struct Diagnosis {
   std::vector<FoundTerm> terms;  ///< those of `corrected`, in their order
   ExperimentSpec corrected;      ///< with them, as further parameters
   NoiseSpec noise;               ///< of `corrected`, its unknown sizes as the residual has them
-  AveragedEstimate averaged;     ///< over the terms that are tied with the last one found, it among them
+  AveragedEstimate averaged;     ///< over them and the terms that are tied with any of them
   ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;

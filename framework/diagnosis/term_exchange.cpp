@@ -12,8 +12,9 @@ using Eigen::Index;
 
 namespace {
 
-/// So many of the best by their scores are fitted in the place of a term, and that term itself.
-constexpr std::size_t kExchangeFits = 3;
+/// So many of the best by their scores are fitted in the place of a term, and that term itself; and so many
+/// of those that the scores hardly tell from the best.
+constexpr std::size_t kExchangeFits = 3, kExchangeAlike = 6;
 
 /// Candidates in the place of a term, fitted beside the others; the largest evidence first.
 struct Rivals {
@@ -21,6 +22,15 @@ struct Rivals {
   std::vector<RankedTerm> ranked;
   std::size_t present = 0;  ///< the term itself
 };
+
+std::size_t countFitted(const std::vector<RankedTerm>& ranked) {
+  std::size_t count = std::min(ranked.size(), kExchangeFits);
+  while (count < std::min(ranked.size(), kExchangeAlike) &&
+         ranked.front().finding.log_evidence - ranked[count].finding.log_evidence < kTiedEvidence) {
+    ++count;
+  }
+  return count;
+}
 
 std::optional<Rivals> findRivals(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
                                  Index p, double level, const CurrentFit& fit, std::size_t out) {
@@ -39,8 +49,9 @@ std::optional<Rivals> findRivals(const ExperimentSpec& without_terms, const Reco
   if (present == ranked.end()) {
     return {};
   }
+  const std::size_t fitted = countFitted(ranked);
   std::rotate(ranked.begin(), present, present + 1);
-  ranked.resize(std::min(ranked.size(), kExchangeFits + 1));
+  ranked.resize(std::min(ranked.size(), fitted + 1));
   for (RankedTerm& one : ranked) {
     fitRanked(rivals.without, recordings, scored, p, level, one);
   }
@@ -57,24 +68,24 @@ bool takesOver(const Rivals& rivals, const CurrentFit& fit) {
          best.chi_square < fit.chi_square + kNoticedChiSquare;
 }
 
-/// Those that cannot be told from `chosen`.
-std::vector<std::string> listTied(const Rivals& rivals, std::size_t chosen) {
-  std::vector<std::string> tied;
+/// Adds those that cannot be told from `chosen`, which stands for `term`.
+void addTied(const Rivals& rivals, std::size_t chosen, const std::string& term, Exchange& exchange) {
   for (std::size_t i = 0; i < rivals.ranked.size(); ++i) {
     const TermFinding& one = rivals.ranked[i].finding;
-    if (i != chosen && one.fitted &&
-        std::abs(rivals.ranked[chosen].finding.log_evidence - one.log_evidence) < kTiedEvidence) {
-      tied.push_back(one.candidate.term);
+    const double against = one.log_evidence - rivals.ranked[chosen].finding.log_evidence;
+    if (i != chosen && one.fitted && std::abs(against) < kTiedEvidence) {
+      exchange.rivals.push_back({term, one.candidate.term, false});
+      const FittedTerm& fitted = rivals.ranked[i].fitted;
+      exchange.alternatives.push_back({fitted.augmented.experiment, fitted.point, against});
     }
   }
-  return tied;
 }
 
 }  // namespace
 
-std::vector<TermRival> exchangeTerms(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
-                                     Index p, double level, CurrentFit& fit) {
-  std::vector<TermRival> found;
+Exchange exchangeTerms(const ExperimentSpec& without_terms, const RecordedFeatures& recordings, Index p,
+                       double level, CurrentFit& fit) {
+  Exchange exchange;
   const std::size_t earlier = fit.terms.size() - 1;
   for (std::size_t tried = 0, at = 0; tried < earlier; ++tried) {
     const std::optional<Rivals> rivals = findRivals(without_terms, recordings, p, level, fit, at);
@@ -86,17 +97,17 @@ std::vector<TermRival> exchangeTerms(const ExperimentSpec& without_terms, const 
     std::size_t chosen = rivals->present;
     if (takesOver(*rivals, fit)) {
       chosen = 0;
-      found.push_back({term, rivals->ranked.front().finding.candidate.term, true});
-      term = found.back().rival;
+      exchange.took_over = true;
+      exchange.alternatives.clear();  // those are beside a term that is there no more
+      exchange.rivals.push_back({term, rivals->ranked.front().finding.candidate.term, true});
+      term = exchange.rivals.back().rival;
       fit = addFitted(rivals->without, rivals->ranked.front());  // at the end: the next has this number
     } else {
       ++at;
     }
-    for (const std::string& tied : listTied(*rivals, chosen)) {
-      found.push_back({term, tied, false});
-    }
+    addTied(*rivals, chosen, term, exchange);
   }
-  return found;
+  return exchange;
 }
 
 }  // namespace twinmap

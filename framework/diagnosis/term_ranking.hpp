@@ -23,6 +23,13 @@ struct RankedTerm {
   FittedTerm fitted{};
 };
 
+/// Terms that the recordings do not tell from those that were taken.
+struct AlternativeFit {
+  ExperimentSpec experiment;
+  Eigen::VectorXd point;
+  double log_evidence = 0.0;  ///< against those taken
+};
+
 /// The terms, the best first, each at the best of its own scales. What a scan costs in evidence is that the
 /// other scales are not so good: their mean counts. p: parameters of the machine before any term.
 std::vector<RankedTerm> rankTerms(const ScoredCandidates& scored, const CurrentFit& current, Eigen::Index p);

@@ -153,15 +153,22 @@ void TermSearch::takeFirst(const CurrentFit& current, const std::vector<RankedTe
   }
   step.log_evidence = ranked.front().finding.log_evidence;
   CurrentFit next = addFitted(current, ranked.front());
+  Exchange exchange;
   if (!is_given) {
     step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
-    step.rivals = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_.level, next);
+    exchange = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_.level, next);
+    step.rivals = exchange.rivals;
   }
   fits_.push_back(std::move(next));
-  const bool is_same = std::none_of(step.rivals.begin(), step.rivals.end(),
-                                    [](const TermRival& rival) { return rival.took_over; });
-  const std::size_t averaged = is_same ? step.tied : 0;  // fitted beside terms that are there still
-  tied_.emplace_back(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(averaged));
+  alternatives_.push_back(std::move(exchange.alternatives));
+  if (exchange.took_over || !step.dropped.empty()) {
+    return;  // what is tied was fitted beside terms that are there no more
+  }
+  for (std::size_t i = 1; i < step.tied; ++i) {
+    const FittedTerm& tied = ranked[i].fitted;
+    alternatives_.back().push_back({tied.augmented.experiment, tied.point,
+                                    ranked[i].finding.log_evidence - ranked.front().finding.log_evidence});
+  }
 }
 
 void TermSearch::takePair(const FittedPair& pair, DiagnosisStep& step) {
@@ -179,7 +186,7 @@ void TermSearch::takePair(const FittedPair& pair, DiagnosisStep& step) {
   step.partner = pair.second;
   step.log_evidence = pair.log_evidence;
   fits_.push_back(pair.fit);
-  tied_.emplace_back();
+  alternatives_.emplace_back();
 }
 
 /// Two terms that are missing together, where the best single one, if there is one, leaves something

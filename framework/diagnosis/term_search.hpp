@@ -25,8 +25,8 @@ class TermSearch {
 
   /// Without a term, then after each step that found some.
   const std::vector<CurrentFit>& getFits() const { return fits_; }
-  /// Of each such step the terms that are tied, the one taken first; none where it is not there any more.
-  const std::vector<std::vector<RankedTerm>>& getTied() const { return tied_; }
+  /// Of each such step what the recordings do not tell from its fit: one term in the place of another.
+  const std::vector<std::vector<AlternativeFit>>& getAlternatives() const { return alternatives_; }
 
  private:
   /// Scores all candidates once more where the best one fits, without it: there the linear model is near the
@@ -43,7 +43,7 @@ class TermSearch {
   const RecordedFeatures& recordings_;
   const DiagnosisOptions& options_;
   std::vector<CurrentFit> fits_;
-  std::vector<std::vector<RankedTerm>> tied_;
+  std::vector<std::vector<AlternativeFit>> alternatives_;
   const bool is_explained_;
   const Eigen::Index shared_;
 };

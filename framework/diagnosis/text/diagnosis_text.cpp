@@ -202,7 +202,7 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
       text += fmt::format("  No estimate: {}.\n", diagnosis.after.posterior.message);
     }
     text += alignRows(listParameterRows(diagnosis), 2, "  ");
-    if (diagnosis.steps[diagnosis.found - 1].tied > 1 && diagnosis.averaged.isGiven()) {
+    if (diagnosis.averaged.models > 1) {
       text +=
           "  The parameters are those with each of the terms that are not told apart, weighted by "
           "evidence.\n";
