@@ -191,7 +191,7 @@ void LanePacket::doEvents() {
     events_->calcChanges(arrays_.time, arrays_.state);
     forEach(lanes, [this](int lane) { findEventSlopes(lane); });
   }
-  jumpBy(events_->updTransitions(), lanes);
+  restart(lanes, lanes, &events_->updTransitions());
   settling_ |= lanes;
 }
 

@@ -1,4 +1,4 @@
-// Where a phase begins: states that bend or jump.
+// Where a phase begins, or an event happens: solutions bend or jump.
 #include <algorithm>
 #include <cmath>
 
@@ -10,21 +10,21 @@ void LanePacket::doBegins() {
   const unsigned lanes = std::exchange(beginning_, 0u);
   unsigned jumping = 0;
   forEach(lanes, [&](int lane) { jumping |= lanes_[lane].getPhase().jumps ? 1u << lane : 0u; });
-  if (jumping != 0) {
-    jumpBy(*jumps_, jumping);
-  }
-  if ((lanes & ~jumping) != 0) {
-    bend(lanes & ~jumping);
-  }
+  restart(lanes, jumping, jumps_ ? &*jumps_ : nullptr);
   forEach(lanes, [this](int lane) { openPhase(lane); });
 }
 
-/// The solution is continuous, whenever the phase begins: f- dt + ds- = f+ dt + ds+. It costs one evaluation
-/// of f, two where the begin moves, and the steps keep their size: a table of a thousand lines a second is
-/// followed at one step a line.
-void LanePacket::bend(unsigned lanes) {
+/// Where the time of what happens moves with a parameter, the states before it go on by f- dt, and those
+/// behind it came by f+ dt less (saltation): s+ = dh/dy (s- + f- dt) + dh/dt dt + dh/dp - f+ dt, where
+/// nothing jumps s+ = s- + f- dt - f+ dt. It costs one evaluation of f, two where the time moves, and the
+/// steps keep their size: a table of a thousand lines a second is followed at one step a line. jumping: those
+/// of the lanes whose states `jumps` gives.
+void LanePacket::restart(unsigned lanes, unsigned jumping, program::Interpreter* jumps) {
   const unsigned moving = findMoving(lanes);
   forEach(moving, [this](int lane) { moveBy(lane, 1.0); });
+  if (jumping != 0) {
+    jump(jumping, *jumps);
+  }
   evaluateAt(lanes);
   if (moving != 0) {
     forEach(moving, [this](int lane) { moveBy(lane, -1.0); });
@@ -33,20 +33,16 @@ void LanePacket::bend(unsigned lanes) {
   forEach(lanes, [this](int lane) { beginAfter(lane); });
 }
 
-/// Where the jump's time moves with a parameter the states before it go on by f- dt, and those behind it came
-/// by f+ dt less (saltation): s+ = dh/dy (s- + f- dt) + dh/dt dt + dh/dp - f+ dt.
-void LanePacket::jumpBy(program::Interpreter& program, unsigned lanes) {
+void LanePacket::jump(unsigned lanes, program::Interpreter& program) {
   forEach(lanes, [&](int lane) { prepareJump(lane, program); });
   program.calcParameters();
   program.calcPhase();
   program.calcOutputs();
-  forEach(lanes, [&](int lane) { takeJump(lane, program); });
-  evaluateAt(lanes);
-  if (const unsigned moving = findMoving(lanes); moving != 0) {
-    forEach(moving, [this](int lane) { moveBy(lane, -1.0); });
-    evaluateAt(moving);
-  }
-  forEach(lanes, [this](int lane) { beginAfter(lane); });
+  forEach(lanes, [&](int lane) {
+    for (int row = 0; row < arrays_.rows; ++row) {
+      arrays_.state[row * count_ + lane] = program.getOutput(row)[lane];
+    }
+  });
 }
 
 /// The lanes in which the time of what happens moves with a direction.
@@ -77,17 +73,7 @@ void LanePacket::prepareJump(int lane, program::Interpreter& program) {
     program.updState(row)[lane] = arrays_.state[row * count_ + lane];
   }
   for (int j = 0; j < directions_; ++j) {
-    const double slope = slopes != nullptr ? (*slopes)[j] : 0.0;
-    program.updPhaseInput(phase_inputs_ + j)[lane] = slope;
-    for (int i = 0; i < states_ && slope != 0.0; ++i) {
-      program.updState((1 + j) * states_ + i)[lane] += slope * arrays_.slopes[1][i * count_ + lane];
-    }
-  }
-}
-
-void LanePacket::takeJump(int lane, const program::Interpreter& program) {
-  for (int row = 0; row < arrays_.rows; ++row) {
-    arrays_.state[row * count_ + lane] = program.getOutput(row)[lane];
+    program.updPhaseInput(phase_inputs_ + j)[lane] = slopes != nullptr ? (*slopes)[j] : 0.0;
   }
 }
 

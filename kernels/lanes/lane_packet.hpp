@@ -34,10 +34,9 @@ class LanePacket {
   unsigned doStep();
   void judge(int lane);
   void doBegins();
-  void bend(unsigned lanes);
-  void jumpBy(program::Interpreter& program, unsigned lanes);
+  void restart(unsigned lanes, unsigned jumping, program::Interpreter* jumps);
+  void jump(unsigned lanes, program::Interpreter& program);
   void prepareJump(int lane, program::Interpreter& program);
-  void takeJump(int lane, const program::Interpreter& program);
   void evaluateAt(unsigned lanes);
   void beginAfter(int lane);
   unsigned findMoving(unsigned lanes) const;
