@@ -86,16 +86,7 @@ DiagnosisStep TermSearch::takeStep(std::size_t number) {
   const bool is_given = !options_.accepted.empty();
   const std::size_t fitted =
       is_given ? takeAccepted(options_.accepted[number], ranked) : countSignificant(ranked);
-  for (std::size_t i = 0; i < fitted; ++i) {
-    fitRanked(current, recordings_, scored, shared_, options_.level, ranked[i]);
-  }
-  std::stable_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(fitted), hasMoreEvidence);
-  if (!is_given && fitted > 0 && isBent(current, ranked.front())) {
-    fitAgain(current, scored, ranked);
-  }
-  if (!is_given && fitted > 0) {
-    putSteadyFirst(ranked);
-  }
+  rankByFits(current, scored, fitted, ranked);
   step.found =
       fitted > 0 && ranked.front().finding.fitted && (is_given || ranked.front().finding.log_evidence > 0.0);
   if (is_given && !step.found) {
@@ -112,6 +103,21 @@ DiagnosisStep TermSearch::takeStep(std::size_t number) {
     takeFirst(current, ranked, step);
   }
   return step;
+}
+
+void TermSearch::rankByFits(const CurrentFit& current, const ScoredCandidates& scored, std::size_t count,
+                            std::vector<RankedTerm>& ranked) const {
+  for (std::size_t i = 0; i < count; ++i) {
+    fitRanked(current, recordings_, scored, shared_, options_.level, ranked[i]);
+  }
+  if (count == 0 || !options_.accepted.empty()) {
+    return;
+  }
+  std::stable_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), hasMoreEvidence);
+  if (isBent(current, ranked.front())) {
+    fitAgain(current, scored, ranked);
+  }
+  putSteadyFirst(ranked);
 }
 
 void TermSearch::fitAgain(const CurrentFit& current, const ScoredCandidates& scored,

@@ -29,6 +29,9 @@ class TermSearch {
   const std::vector<std::vector<AlternativeFit>>& getAlternatives() const { return alternatives_; }
 
  private:
+  /// Fits the first `count`; those that are sought, not accepted, come in the order of what that says.
+  void rankByFits(const CurrentFit& current, const ScoredCandidates& scored, std::size_t count,
+                  std::vector<RankedTerm>& ranked) const;
   /// Scores all candidates once more where the best one fits, without it: there the linear model is near the
   /// truth. Fits the best of them from there; what ends better takes its place.
   void fitAgain(const CurrentFit& current, const ScoredCandidates& scored,

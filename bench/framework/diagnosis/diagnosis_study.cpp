@@ -22,20 +22,10 @@
 #include <set>
 #include <string>
 
-#include "framework/base/random/random.hpp"
-#include "framework/data/features/experiment_features.hpp"
-#include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/data/noise/noise.hpp"
-#include "framework/diagnosis/augment.hpp"
-#include "framework/diagnosis/candidates/observed_motion.hpp"
+#include "bench/framework/diagnosis/incomplete_machine.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/diagnosis/diagnosis.hpp"
-#include "framework/diagnosis/scored_candidates.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
-#include "framework/inference/tolerances/tolerances.hpp"
-#include "framework/models/make_simulator.hpp"
 
 namespace twinmap {
 namespace {
@@ -59,28 +49,9 @@ struct Tally {
 class Study {
  public:
   Study(const std::string& file, std::uint64_t seed)
-      : experiment_(followNoise(readExperimentWithSignals(loadExperimentTree(file)))),
-        layout_(makeLayout(experiment_)),
-        extractor_(makeExtractor(experiment_, layout_)),
-        noise_(experiment_.noise, layout_),
-        random_(seed, RandomPurpose::kTestDesign),
-        seed_(seed),
-        shared_(static_cast<Index>(experiment_.model.parameters.size())) {}
+      : maker_(file, seed), experiment_(maker_.getModel()), shared_(maker_.getParameterCount()) {}
 
-  std::vector<std::string> listVisible() const {
-    std::vector<std::string> terms{"none"};
-    const ScoredCandidates scored = score(calcBoxCenter(collectUnknown(experiment_.model)));
-    for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
-      const std::string& term = scored.candidates[i].term;
-      if (scored.scores[i].visible && terms.back() != term) {
-        terms.push_back(term);
-      }
-    }
-    for (const ForcedCoordinate& coordinate : listForcedCoordinates(experiment_.model.system)) {
-      terms.push_back("process." + coordinate.name);
-    }
-    return terms;
-  }
+  std::vector<std::string> listTerms() const { return maker_.listTerms(); }
 
   Tally run(const std::string& term, int tests) const {
     Tally tally;
@@ -103,168 +74,35 @@ class Study {
     return kApart * hash;
   }
 
-  double drawUniform(int test, Index channel) const {
-    return random_.calcUniform(static_cast<std::uint64_t>(test), static_cast<std::uint64_t>(channel));
-  }
-
-  ScoredCandidates score(const VectorXd& point) const {
-    const RecordedFeatures empty{layout_, {VectorXd::Zero(extractor_.getFeatureCount())}, {}};
-    return scoreCandidates(experiment_, empty, point);
-  }
-
-  /// Whether a term of this size cannot be told from another, by the linear model.
-  static bool isAlike(const ScoredCandidates& scored, std::size_t chosen, double size) {
-    constexpr double kTold = 2.0 * kTiedEvidence;  // of chi-square
-    const auto at = static_cast<Index>(chosen);
-    const double whole = size * scored.test->calcLength(at);
-    for (std::size_t k = 0; k < scored.candidates.size(); ++k) {
-      const double likeness = scored.test->calcLikeness(at, static_cast<Index>(k));
-      if (scored.candidates[k].term != scored.candidates[chosen].term && scored.scores[k].visible &&
-          whole * whole * (1.0 - likeness * likeness) < kTold) {
-        return true;
-      }
-    }
-    return false;
-  }
-
-  double drawRatio(int test) const {
-    return std::exp(std::log(1.2) + drawUniform(test, 100) * std::log(25.0));
-  }
-
-  /// A force on a coordinate that forgets itself: Ornstein and Uhlenbeck's, linear between 100 knots.
-  TermCandidate makeGust(const std::string& coordinate, int test) const {
-    constexpr int kKnots = 101;
-    constexpr Index kChannel = 1000;
-    const double interval = experiment_.model.simulation.duration / (kKnots - 1);
-    const double forgets = std::exp(-1.0 / (2.0 + 8.0 * drawUniform(test, 101)));  // within 2 to 10 knots
-    TableSpec table;
-    double value = 0.0;
-    for (int i = 0; i < kKnots; ++i) {
-      const double step =
-          random_.calcNormal(static_cast<std::uint64_t>(test), static_cast<std::uint64_t>(kChannel + i));
-      value = i == 0 ? step : forgets * value + std::sqrt(1.0 - forgets * forgets) * step;
-      table.times.push_back(interval * i);
-      table.values.push_back(value);
-    }
-    TermCandidate gust;
-    gust.term = "process." + coordinate;
-    gust.add = [coordinate, table](ModelSpec& model, const std::string& coefficient,
-                                   const std::vector<std::string>&) {
-      SignalSpec signal;
-      signal.name = {"gust", {}};
-      signal.unit = "1";
-      signal.tables.push_back(table);
-      model.excitation.push_back(signal);
-      ForceLaw<Expression> law;
-      law.coordinate = {coordinate, {}};
-      law.force = {coefficient + "*gust", {}};
-      model.system.elements.get<ForceLaw>().push_back(law);
-    };
-    return gust;
-  }
-
-  AugmentedExperiment makeGustyMachine(const std::string& term, int test, VectorXd& point) const {
-    const TermCandidate gust = makeGust(term.substr(term.find('.') + 1), test);
-    const RecordedFeatures empty = makeEmptyRecordings(experiment_, {});
-    const LinearizedRecordings linear = RecordingsProblem(addAll(experiment_, {gust}).experiment, empty)
-                                            .linearize(insertAdded(point, shared_, VectorXd::Zero(1)));
-    MatrixXd others(linear.jacobian.rows(), linear.jacobian.cols() - 1);
-    others << linear.jacobian.leftCols(shared_), linear.jacobian.rightCols(others.cols() - shared_);
-    const ScoreTest score(linear.residual, others, linear.jacobian.col(shared_));
-    const double size = std::sqrt((drawRatio(test) - 1.0) * static_cast<double>(linear.residual.size())) *
-                        score.calcScore(0, kInfinity).stddev;
-    point = insertAdded(point, shared_, VectorXd::Constant(1, size));
-    return addTerm(experiment_, gust, 2.0 * size);
-  }
-
-  /// The machine with the term, and its point; the model itself for "none". The ratio of chi-square follows a
-  /// log-uniform distribution.
-  AugmentedExperiment makeMachine(const std::string& term, int test, VectorXd& point, bool& is_alike) const {
-    if (term == "none") {
-      return {experiment_, 0};
-    }
-    if (isProcess(term)) {
-      return makeGustyMachine(term, test, point);
-    }
-    const ScoredCandidates scored = score(point);
-    std::vector<std::size_t> scales;
-    for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
-      if (scored.candidates[i].term == term && scored.scores[i].visible) {
-        scales.push_back(i);
-      }
-    }
-    if (scales.empty()) {
-      throw std::runtime_error(term + " is not visible");
-    }
-    const std::size_t chosen = scales[scales.size() / 2];
-    const double size =
-        std::sqrt((drawRatio(test) - 1.0) * static_cast<double>(extractor_.getFeatureCount())) *
-        scored.scores[chosen].stddev;
-    is_alike = isAlike(scored, chosen, size);
-    AugmentedExperiment machine = addTerm(experiment_, scored.candidates[chosen], 2.0 * size);
-    VectorXd added(machine.added);
-    added[0] = size;
-    for (Index i = 1; i < machine.added; ++i) {
-      const OwnScale& scale = scored.candidates[chosen].own_scales[static_cast<std::size_t>(i) - 1];
-      const double factor = std::exp(drawUniform(test, 100 + i) - 0.5);
-      added[i] = scale.value * std::clamp(factor, 1.0 / scale.reach, scale.reach);
-    }
-    point = insertAdded(point, shared_, added);
-    return machine;
-  }
-
   void measureAndDiagnose(const std::string& term, int test, Tally& tally) const {
-    const std::vector<ParameterSpec> unknown = collectUnknown(experiment_.model);
-    VectorXd point = calcLowerBounds(unknown);
-    for (Index j = 0; j < point.size(); ++j) {
-      point[j] += calcWidths(unknown)[j] * (0.15 + 0.7 * drawUniform(test, j));
-    }
-    const VectorXd truth = point.head(shared_);
-    bool is_alike = false;
-    const AugmentedExperiment machine = makeMachine(term, test, point, is_alike);
-    const std::optional<VectorXd> measured = measure(machine.experiment, point, test, 0);
+    const std::optional<IncompleteMachine> machine = maker_.make(term, test);
+    const std::optional<VectorXd> measured =
+        machine ? maker_.measure(machine->experiment, machine->point, test, 0) : std::optional<VectorXd>();
     if (!measured) {
       return;
     }
-    const RecordedFeatures recordings{layout_, {*measured}, {}};
+    const RecordedFeatures recordings{maker_.getLayout(), {*measured}, {}};
     const std::clock_t begin = std::clock();
     const Diagnosis diagnosis = diagnose(experiment_, recordings, {});
     tally.seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
-    count(diagnosis, term, truth, tally);
+    count(diagnosis, term, machine->point.head(shared_), tally);
     const bool names = namesAmongTied(diagnosis, term);
-    tally.alike += is_alike ? 1 : 0;
-    tally.alike_named += is_alike && names && diagnosis.steps.front().tied > 1 ? 1 : 0;
+    tally.alike += machine->is_alike ? 1 : 0;
+    tally.alike_named += machine->is_alike && names && diagnosis.steps.front().tied > 1 ? 1 : 0;
     double factor = 0.0;
     if (names && diagnosis.steps.front().tied > 1 &&
         std::sscanf(diagnosis.steps.front().advice.c_str(), "a second test at %lf times", &factor) == 1) {
       ++tally.advised;
-      countSecond(diagnosis, diagnoseBoth(machine.experiment, point, test, *measured, factor), term, tally);
+      countSecond(diagnosis, diagnoseBoth(*machine, test, *measured, factor), term, tally);
     }
-  }
-
-  /// The features of a machine; none where it cannot be simulated.
-  std::optional<VectorXd> measure(const ExperimentSpec& machine, const VectorXd& point, int test,
-                                  int repeat) const {
-    const std::unique_ptr<Simulator> simulator =
-        makeTrustedSimulator(machine.model, layout_.times, layout_.modes);
-    MatrixXd response(layout_.getRowCount(), 1);
-    SampleStatus status;
-    simulator->simulate(point, response, &status);
-    if (!status.ok) {
-      return {};
-    }
-    const MatrixXd noisy =
-        addNoise(response, noise_,
-                 {seed_ + 1000 * static_cast<std::uint64_t>(test) + static_cast<std::uint64_t>(repeat),
-                  RandomPurpose::kTestNoise});
-    return extractor_.extract(noisy).col(0);
   }
 
   /// Of the test that was made and one with all signals `factor` times as large.
-  std::optional<Diagnosis> diagnoseBoth(ExperimentSpec machine, const VectorXd& point, int test,
-                                        const VectorXd& first, double factor) const {
-    scaleSignals(machine.model, factor);
-    const std::optional<VectorXd> second = measure(machine, point, test, 500);
+  std::optional<Diagnosis> diagnoseBoth(const IncompleteMachine& machine, int test, const VectorXd& first,
+                                        double factor) const {
+    ExperimentSpec driven = machine.experiment;
+    scaleSignals(driven.model, factor);
+    const std::optional<VectorXd> second = maker_.measure(driven, machine.point, test, 500);
     if (!second) {
       return {};
     }
@@ -290,8 +128,6 @@ class Study {
     tally.apart += apart ? 1 : 0;
     tally.alone += both->steps.front().tied == 1 ? 1 : 0;
   }
-
-  static bool isProcess(const std::string& term) { return term.rfind("process.", 0) == 0; }
 
   static bool namesAmongTied(const Diagnosis& diagnosis, const std::string& term) {
     if (diagnosis.found == 0) {
@@ -368,12 +204,8 @@ class Study {
     }
   }
 
-  const ExperimentSpec experiment_;
-  const ResponseLayout layout_;
-  const FeatureExtractor extractor_;
-  const ResponseNoise noise_;
-  const RandomStream random_;
-  const std::uint64_t seed_;
+  const MachineMaker maker_;
+  const ExperimentSpec& experiment_;
   const Index shared_;
 };
 
@@ -416,7 +248,7 @@ int run(int count, char** arguments) {
   const Study study(arguments[1], count > 3 ? std::strtoull(arguments[3], nullptr, 10) : 1);
   std::vector<std::string> terms(arguments + std::min(count, 4), arguments + count);
   if (terms.empty()) {
-    terms = study.listVisible();
+    terms = study.listTerms();
   }
   for (const std::string& term : terms) {
     try {
@@ -432,5 +264,10 @@ int run(int count, char** arguments) {
 }  // namespace twinmap
 
 int main(int count, char** arguments) {
-  return twinmap::run(count, arguments);
+  try {
+    return twinmap::run(count, arguments);
+  } catch (const std::exception& error) {
+    fmt::print("{}: {}\n", count > 1 ? arguments[1] : "", error.what());
+    return 1;
+  }
 }

@@ -78,7 +78,7 @@ struct SizedNoise {
 };
 
 /// For all structures what the fit of the one leaves that leaves least.
-SizedNoise sizeNoise(std::vector<Source>& all) {
+SizedNoise takeLeastNoise(std::vector<Source>& all) {
   const NoiseSpec stated = all.front().experiment.noise;
   if (!hasUnknownNoise(stated)) {
     return {"", stated, stated};
@@ -149,7 +149,7 @@ void select(const SelectArguments& arguments) {
     sources.push_back(readSource(file, measurements, arguments));
   }
   requireComparable(sources);
-  const SizedNoise noise = sizeNoise(sources);
+  const SizedNoise noise = takeLeastNoise(sources);
   std::vector<Structure> all;
   std::transform(sources.begin(), sources.end(), std::back_inserter(all), fitStructure);
   std::stable_sort(all.begin(), all.end(), [](const Structure& a, const Structure& b) {
