@@ -115,9 +115,6 @@ struct Diagnosis {
   std::vector<std::string> listTerms() const;
 };
 
-/// Terms whose evidences differ by less are tied: 20 to 1.
-constexpr double kTiedEvidence = 3.0;
-
 /// Fits the experiment to the recordings (samplePosterior), tests each candidate by its score (ScoreTest)
 /// with exact derivatives at the fit, fits the best ones, ranks them by their evidence, takes the first and
 /// begins again with it. Two terms are taken at once where they explain what neither does, or more than the

@@ -5,6 +5,9 @@
 
 namespace twinmap {
 
+/// What log evidences differ by where they do not tell terms apart: 20 to 1.
+constexpr double kTiedEvidence = 3.0;
+
 /// What a term would explain of a residual beside what the parameters can take up (Rao's score test; Rao
 /// 1948), by the linear model at a fit.
 struct TermScore {

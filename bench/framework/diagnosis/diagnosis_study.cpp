@@ -140,8 +140,11 @@ class Study {
 
   static bool namesProcess(const Diagnosis& diagnosis, const std::string& term) {
     const std::string what = "a force on " + term.substr(term.find('.') + 1);
-    return (diagnosis.process && diagnosis.process->what == what) ||
-           (diagnosis.found == 0 && diagnosis.remainder && diagnosis.remainder->what == what);
+    const auto names = [&](const std::optional<Remainder>& one) {
+      return one && (one->what == what ||
+                     std::find(one->rivals.begin(), one->rivals.end(), what) != one->rivals.end());
+    };
+    return names(diagnosis.process) || (diagnosis.found == 0 && names(diagnosis.remainder));
   }
 
   void count(const Diagnosis& diagnosis, const std::string& term, const VectorXd& truth, Tally& tally) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/diagnosis/remainder/process_fit.hpp"
+#include "framework/diagnosis/score_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/diagnosis/remainder/process_fit.hpp"
+#include "framework/diagnosis/score_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -85,38 +86,67 @@ std::vector<FittedRecording> fitRecordings(const ExperimentSpec& experiment,
   return fitted;
 }
 
+/// The best of each effect.
+std::vector<BestProcess> searchProcesses(const std::vector<FittedRecording>& recordings, Index shared,
+                                         double duration) {
+  std::vector<BestProcess> processes;
+  for (std::size_t e = 0; e < recordings.front().effects.size(); ++e) {
+    // few correlation times: the evidence changes little with them
+    processes.push_back(
+        searchProcess({recordings, e, shared}, {0.02 * duration, 0.06 * duration, 0.2 * duration}));
+  }
+  return processes;
+}
+
+/// Means (from the fit) and standard deviations over all processes, by evidence; names those that are tied
+/// with the best one.
+void averageProcesses(const std::vector<FittedRecording>& recordings, Index shared,
+                      const std::vector<BestProcess>& processes, Index p, Remainder& remainder) {
+  constexpr double kNegligible = 10.0;  // of log evidence: 5e-5 of the whole
+  double sum = 0.0;
+  VectorXd mean = VectorXd::Zero(p), square = VectorXd::Zero(p);
+  for (std::size_t e = 0; e < processes.size(); ++e) {
+    const double less = remainder.log_evidence - processes[e].log_evidence;
+    if (!(less < kNegligible)) {
+      continue;
+    }
+    const ProcessEstimate estimate = estimateProcess({recordings, e, shared}, processes[e]);
+    const VectorXd step = estimate.step.head(p);
+    const double weight = std::exp(-less);
+    sum += weight;
+    mean += weight * step;
+    square += weight * (step.cwiseAbs2() + estimate.covariance.diagonal().head(p));
+    const std::string& what = recordings.front().effects[e].what;
+    if (less < kTiedEvidence && what != remainder.what) {
+      remainder.rivals.push_back(what);
+    }
+  }
+  remainder.mean = mean / sum;
+  remainder.stddevs = (square / sum - remainder.mean.cwiseAbs2()).cwiseSqrt();
+}
+
 }  // namespace
 
 std::optional<Remainder> findRemainder(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                        const VectorXd& point, Index p) {
   const std::vector<FittedRecording> fitted = fitRecordings(experiment, recordings, point);
   const auto all = static_cast<Index>(experiment.model.parameters.size());
-  const double duration = experiment.model.simulation.duration;
-  BestProcess best;
-  ProcessProblem chosen{fitted, 0, all};
-  for (std::size_t e = 0; e < fitted.front().effects.size(); ++e) {
-    // few correlation times: the evidence changes little with them
-    const ProcessProblem problem{fitted, e, all};
-    const BestProcess process = searchProcess(problem, {0.02 * duration, 0.06 * duration, 0.2 * duration});
-    if (process.log_evidence > best.log_evidence) {
-      best = process;
-      chosen.effect = e;
-    }
-  }
-  if (!(best.log_evidence > 0.0)) {
+  const std::vector<BestProcess> processes =
+      searchProcesses(fitted, all, experiment.model.simulation.duration);
+  const auto best = std::max_element(
+      processes.begin(), processes.end(),
+      [](const BestProcess& a, const BestProcess& b) { return a.log_evidence < b.log_evidence; });
+  if (best == processes.end() || !(best->log_evidence > 0.0)) {
     return {};
   }
-  const ProcessEffect& effect = fitted.front().effects[chosen.effect];
-  const ProcessEstimate estimate = estimateProcess(chosen, best);
-  Remainder remainder{effect.what,
-                      effect.unit,
-                      std::sqrt(best.variance),
-                      best.correlation_length,
-                      best.log_evidence,
-                      point.head(p) + estimate.step.head(p),
-                      estimate.covariance.diagonal().head(p).cwiseSqrt(),
-                      effect.knots,
-                      estimate.means.front()};
+  const auto chosen = static_cast<std::size_t>(best - processes.begin());
+  const ProcessEffect& effect = fitted.front().effects[chosen];
+  Remainder remainder{effect.what,       {}, effect.unit, std::sqrt(best->variance), best->correlation_length,
+                      best->log_evidence};
+  remainder.times = effect.knots;
+  remainder.process = estimateProcess({fitted, chosen, all}, *best).means.front();
+  averageProcesses(fitted, all, processes, p, remainder);
+  remainder.mean += point.head(p);
   widenByScatter(fitted, point, p, remainder);
   return remainder;
 }

@@ -10,17 +10,19 @@
 namespace twinmap {
 
 /// What a model leaves unexplained, as a process in time: a random force on a coordinate or a random error of
-/// an output, whichever has the larger evidence.
+/// an output, whichever has the largest evidence.
 struct Remainder {
-  std::string what;               ///< "a force on x", "an error of output x"
-  std::string unit;               ///< of its stddev: N, N m; "noise sd" of an output
-  double stddev = 0.0;            ///< of the process at any time
-  double correlation_time = 0.0;  ///< s
-  double log_evidence = 0.0;      ///< against noise alone
-  /// p: the machine's parameters where the process is there, as far as the linear model knows; where there
-  /// are three or more recordings, no more certain than their scatter between them allows.
-  Eigen::VectorXd mean, stddevs;
-  Eigen::VectorXd times, process;  ///< its mean at some times of the first recording, s and `unit`
+  std::string what;                   ///< "a force on x", "an error of output x"
+  std::vector<std::string> rivals{};  ///< others that the recordings do not tell from it (kTiedEvidence)
+  std::string unit;                   ///< of its stddev: N, N m; "noise sd" of an output
+  double stddev = 0.0;                ///< of the process at any time
+  double correlation_time = 0.0;      ///< s
+  double log_evidence = 0.0;          ///< against noise alone
+  /// p: the machine's parameters where one of the processes is there, weighted by evidence, as far as the
+  /// linear model knows; where there are three or more recordings, no more certain than their scatter between
+  /// them allows.
+  Eigen::VectorXd mean{}, stddevs{};
+  Eigen::VectorXd times{}, process{};  ///< its mean at some times of the first recording, s and `unit`
 
   /// Of the machine's parameters the first whose mean is out of its bounds by more than its standard
   /// deviation, where the linear model does not hold: then there is no estimate. -1 where none is.

@@ -104,6 +104,7 @@ Json makeNoiseJson(const Diagnosis& diagnosis) {
 
 Json makeRemainderJson(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
   Json json{{"what", remainder.what},
+            {"rivals", remainder.rivals},
             {"sd", remainder.stddev},
             {"unit", remainder.unit},
             {"correlation_time", remainder.correlation_time},

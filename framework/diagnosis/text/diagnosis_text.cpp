@@ -49,9 +49,13 @@ void addEstimate(const VectorXd& mean, const VectorXd& stddev, Index i, std::vec
 
 /// "a force on x of sd 0.03 N, which changes within 0.1 s (log evidence 57.0)"
 std::string describeSize(const Remainder& remainder) {
-  return fmt::format("{} of sd {} {}, which changes within {} s (log evidence {:.1f})", remainder.what,
+  return fmt::format("{} of sd {} {}, which changes within {} s (log evidence {:.1f}){}", remainder.what,
                      toShortText(remainder.stddev, kStddevFigures), remainder.unit,
-                     toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence);
+                     toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence,
+                     remainder.rivals.empty()
+                         ? ""
+                         : fmt::format(", or as {}: these recordings do not tell them apart",
+                                       fmt::join(remainder.rivals, ", ")));
 }
 
 std::string describeOutside(const Remainder& remainder, const std::vector<ParameterSpec>& parameters) {
@@ -62,8 +66,12 @@ std::string describeOutside(const Remainder& remainder, const std::vector<Parame
 }
 
 /// What it is, and the parameters with it.
-std::string makeProcessText(const std::string& what, const TextRows& rows) {
-  return "  " + what + (rows.empty() ? "\n" : " With it:\n" + alignRows(rows, 2, "  "));
+std::string makeProcessText(const std::string& what, const Remainder& remainder,
+                            const std::vector<ParameterSpec>& parameters) {
+  const TextRows rows = listRemainderRows(remainder, parameters);
+  const std::string with =
+      remainder.rivals.empty() ? " With it:\n" : " With one of them, weighted by evidence:\n";
+  return "  " + what + (rows.empty() ? "\n" : with + alignRows(rows, 2, "  "));
 }
 
 }  // namespace
@@ -94,7 +102,7 @@ std::string describeRemainder(const Diagnosis& diagnosis) {
 }
 
 std::string describeProcess(const Diagnosis& diagnosis) {
-  return "A random process explains more than all terms found: " + describeSize(*diagnosis.process) +
+  return "A random process explains more than all terms found: it is as " + describeSize(*diagnosis.process) +
          ". Wind, ground motion or the chatter of a drive are such." +
          describeOutside(*diagnosis.process, diagnosis.corrected.model.parameters);
 }
@@ -186,9 +194,8 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
   for (const std::string& line : {describeNoise(diagnosis), describeBounds(diagnosis)}) {
     text += line.empty() ? "" : line + "\n";
   }
-  text += diagnosis.process
-              ? makeProcessText(describeProcess(diagnosis), listRemainderRows(*diagnosis.process, parameters))
-              : "";
+  text +=
+      diagnosis.process ? makeProcessText(describeProcess(diagnosis), *diagnosis.process, parameters) : "";
   for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
     if (!diagnosis.steps[i].ranked.empty()) {
       text += describeStep(diagnosis.steps[i], i + 1, diagnosis.level) +
@@ -210,9 +217,9 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
   }
   if (diagnosis.isIncomplete()) {
     text += fmt::format("{}: {}\n", diagnosis.getStatus(), describeNotice(Notice::kModelIncomplete));
-    text += diagnosis.remainder ? makeProcessText(describeRemainder(diagnosis),
-                                                  listRemainderRows(*diagnosis.remainder, parameters))
-                                : "";
+    text += diagnosis.remainder
+                ? makeProcessText(describeRemainder(diagnosis), *diagnosis.remainder, parameters)
+                : "";
   }
   return text;
 }

@@ -23,7 +23,7 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number, double l
 /// "What remains is as a force on x of sd 0.03 N, ...".
 std::string describeRemainder(const Diagnosis& diagnosis);
 
-/// "A random process explains more than all terms found: a force on x of sd 0.03 N ..."; where one does.
+/// "A random process explains more than all terms found: it is as a force on x of sd ..."; where one does.
 std::string describeProcess(const Diagnosis& diagnosis);
 
 /// Headings, then rows of cells.
