@@ -3,12 +3,14 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <optional>
+#include <stdexcept>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/diagnosis/score_test.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -18,23 +20,33 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Derivatives of a test's residuals: of the machine's parameters, of the terms, of its own unknowns.
-struct TestDerivatives {
-  MatrixXd machine, terms, own;
+/// A test of a model with a term at its fit: residuals, and their derivatives by what all tests share (the
+/// machine's parameters and the term's own) and by what is the test's own.
+struct FittedTest {
+  VectorXd residual;
+  MatrixXd shared, own;
 };
 
-TestDerivatives calcTestDerivatives(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                    const VectorXd& point, const std::vector<TermCandidate>& candidates,
-                                    double factor) {
-  AugmentedExperiment all = addAll(experiment, candidates);
+/// With all signals `factor` times as large, against the recordings as they are: differences between terms do
+/// not depend on these.
+FittedTest linearizeTest(const FittedTerm& fitted, const RecordedFeatures& recordings, double factor) {
+  ExperimentSpec experiment = fitted.augmented.experiment;
   if (factor != 1.0) {
-    changeTrials(all.experiment, [&](ExperimentSpec& one) { scaleSignals(one.model, factor); });
+    changeTrials(experiment, [&](ExperimentSpec& one) { scaleSignals(one.model, factor); });
   }
-  const auto p = static_cast<Index>(experiment.model.parameters.size());
-  const RecordingsProblem problem(all.experiment, recordings);
-  const MatrixXd jacobian = problem.linearize(insertAdded(point, p, VectorXd::Zero(all.added))).jacobian;
-  return {jacobian.leftCols(p), jacobian.middleCols(p, all.added),
-          jacobian.rightCols(jacobian.cols() - p - all.added)};
+  const auto shared = static_cast<Index>(experiment.model.parameters.size());
+  const LinearizedRecordings linear = RecordingsProblem(experiment, recordings).linearize(fitted.point);
+  return {linear.residual, linear.jacobian.leftCols(shared),
+          linear.jacobian.rightCols(linear.jacobian.cols() - shared)};
+}
+
+std::vector<FittedTest> linearizeAll(const std::vector<const FittedTerm*>& tied,
+                                     const RecordedFeatures& recordings, double factor) {
+  std::vector<FittedTest> tests;
+  for (const FittedTerm* fitted : tied) {
+    tests.push_back(linearizeTest(*fitted, recordings, factor));
+  }
+  return tests;
 }
 
 /// The least difference D of chi-square without noise behind which terms are told apart in 95 % of
@@ -46,24 +58,29 @@ double calcToldChiSquare() {
   return root * root;
 }
 
-/// Whether both tests tell each of the terms from all others, where it is missing by what was found: any of
-/// them may be the one.
-bool tells(const TestDerivatives& first, const TestDerivatives& second,
-           const std::vector<TermFinding>& tied) {
-  const Index n = first.machine.rows(), m = second.machine.rows(), p = first.machine.cols();
+/// The chi-square, less the noise, behind which a model ends that is fitted to two tests of a machine with
+/// another term: its parameters, the term's own scales among them, follow by one Gauss-Newton step.
+double calcSeparation(const FittedTest& first, const FittedTest& second, const FittedTest& machine_first,
+                      const FittedTest& machine_second) {
+  const Index n = first.residual.size(), m = second.residual.size(), p = first.shared.cols();
   MatrixXd jacobian = MatrixXd::Zero(n + m, p + first.own.cols() + second.own.cols());
-  jacobian.leftCols(p) << first.machine, second.machine;
+  jacobian.leftCols(p) << first.shared, second.shared;
   jacobian.block(0, p, n, first.own.cols()) = first.own;
   jacobian.block(n, p + first.own.cols(), m, second.own.cols()) = second.own;
-  MatrixXd terms(n + m, first.terms.cols());
-  terms << first.terms, second.terms;
-  const ScoreTest test(VectorXd::Zero(n + m), jacobian, terms);
+  VectorXd difference(n + m);
+  difference << first.residual - machine_first.residual, second.residual - machine_second.residual;
+  const VectorXd lengths =
+      jacobian.colwise().norm().transpose().unaryExpr([](double x) { return x > 0.0 ? x : 1.0; });
+  const MatrixXd scaled = jacobian * lengths.cwiseInverse().asDiagonal();
+  return (difference - scaled * linalg::fitLinear(scaled, difference).coefficients).squaredNorm();
+}
+
+/// Whether two tests tell each of the terms from all others: any of them may be the one that is missing.
+bool tells(const std::vector<FittedTest>& first, const std::vector<FittedTest>& second) {
   const double told = calcToldChiSquare();
-  for (Index i = 0; i < terms.cols(); ++i) {
-    const double whole = tied[static_cast<std::size_t>(i)].estimate * test.calcLength(i);
-    for (Index k = 0; k < terms.cols(); ++k) {
-      const double likeness = test.calcLikeness(i, k);
-      if (k != i && whole * whole * (1.0 - likeness * likeness) < told) {
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    for (std::size_t k = 0; k < first.size(); ++k) {
+      if (k != i && !(calcSeparation(first[k], second[k], first[i], second[i]) > told)) {
         return false;
       }
     }
@@ -71,21 +88,27 @@ bool tells(const TestDerivatives& first, const TestDerivatives& second,
   return true;
 }
 
+/// None where one of the models cannot be simulated so.
+std::optional<std::vector<FittedTest>> tryTest(const std::vector<const FittedTerm*>& tied,
+                                               const RecordedFeatures& recordings, double factor) {
+  try {
+    return linearizeAll(tied, recordings, factor);
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 std::string adviseSecondTest(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                             const VectorXd& point, const std::vector<TermFinding>& tied) {
+                             const std::vector<const FittedTerm*>& tied) {
   if (experiment.model.excitation.empty()) {
     return "a second test from another initial state may";
   }
-  std::vector<TermCandidate> candidates;
-  for (const TermFinding& finding : tied) {
-    candidates.push_back(finding.candidate);
-  }
-  const TestDerivatives first = calcTestDerivatives(experiment, recordings, point, candidates, 1.0);
+  const std::vector<FittedTest> first = linearizeAll(tied, recordings, 1.0);
   for (const double factor : {2.0, 0.5, 4.0}) {
-    const TestDerivatives second = calcTestDerivatives(experiment, recordings, point, candidates, factor);
-    if (tells(first, second, tied)) {
+    const std::optional<std::vector<FittedTest>> second = tryTest(tied, recordings, factor);
+    if (second && tells(first, *second)) {
       return fmt::format("a second test at {} times the amplitude would", toText(factor));
     }
   }

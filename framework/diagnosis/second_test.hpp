@@ -3,14 +3,16 @@
 #include <string>
 #include <vector>
 
-#include "framework/diagnosis/diagnosis.hpp"
+#include "framework/diagnosis/scored_candidates.hpp"
 
 namespace twinmap {
 
-/// Which further test would tell terms apart that these recordings do not: a sentence. Tests are the same
-/// with all signals multiplied by one number; judged by the linear model at `point` (u), whichever of `tied`
-/// is what is missing. Cost: two simulations with derivatives a recording for each number tried.
+/// Which further test would tell terms apart that these recordings do not, whichever of `tied` is what is
+/// missing: a sentence. tied: two or more, fitted beside the same terms. Tests are the same with all signals
+/// multiplied by one number: what a model with one term predicts of it, a model with another term follows
+/// with its parameters and own scales as far as the linear model about its fit goes. Cost: two simulations
+/// with derivatives a term and recording for each number tried.
 std::string adviseSecondTest(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                             const Eigen::VectorXd& point, const std::vector<TermFinding>& tied);
+                             const std::vector<const FittedTerm*>& tied);
 
 }  // namespace twinmap

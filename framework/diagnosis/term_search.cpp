@@ -155,7 +155,7 @@ void TermSearch::takeFirst(const CurrentFit& current, const std::vector<RankedTe
                            DiagnosisStep& step) {
   const bool is_given = !options_.accepted.empty();
   if (!is_given) {
-    setTied(current, step);
+    setTied(current, ranked, step);
   }
   step.log_evidence = ranked.front().finding.log_evidence;
   CurrentFit next = addFitted(current, ranked.front());
@@ -241,15 +241,19 @@ std::size_t TermSearch::countSignificant(const std::vector<RankedTerm>& ranked) 
 }
 
 /// Those whose evidence is hardly less than that of the first, and the test that would tell.
-void TermSearch::setTied(const CurrentFit& current, DiagnosisStep& step) const {
-  while (step.tied < step.ranked.size() && step.ranked[step.tied].fitted &&
-         step.ranked.front().log_evidence - step.ranked[step.tied].log_evidence < kTiedEvidence) {
-    ++step.tied;
+void TermSearch::setTied(const CurrentFit& current, const std::vector<RankedTerm>& ranked,
+                         DiagnosisStep& step) const {
+  std::vector<const FittedTerm*> tied;
+  for (const RankedTerm& one : ranked) {
+    if (!one.finding.fitted ||
+        !(ranked.front().finding.log_evidence - one.finding.log_evidence < kTiedEvidence)) {
+      break;
+    }
+    tied.push_back(&one.fitted);
   }
+  step.tied = tied.size();
   if (step.tied > 1) {
-    const std::vector<TermFinding> tied(step.ranked.begin(),
-                                        step.ranked.begin() + static_cast<std::ptrdiff_t>(step.tied));
-    step.advice = adviseSecondTest(current.experiment, recordings_, current.point, tied);
+    step.advice = adviseSecondTest(current.experiment, recordings_, tied);
   }
 }
 

@@ -41,7 +41,7 @@ class TermSearch {
   std::optional<FittedPair> findBetterPair(const CurrentFit& current, const ScoredCandidates& scored,
                                            const RankedTerm* single) const;
   std::size_t countSignificant(const std::vector<RankedTerm>& ranked) const;
-  void setTied(const CurrentFit& current, DiagnosisStep& step) const;
+  void setTied(const CurrentFit& current, const std::vector<RankedTerm>& ranked, DiagnosisStep& step) const;
 
   const RecordedFeatures& recordings_;
   const DiagnosisOptions& options_;

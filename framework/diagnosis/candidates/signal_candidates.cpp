@@ -193,7 +193,8 @@ void addLimits(const SignalSpec& signal, double largest, std::vector<TermCandida
     addToSignal(changed, name,
                 fmt::format("{}*({} - {})", coefficient, writeBeyond(name, scales.front()), name));
   };
-  addScanned(dead_zone, 0.1 * largest, 4.0, 2, candidates);
+  dead_zone.own_scales.front().reach = kReachOfLimits;
+  addScanned(dead_zone, 0.1 * largest, 3.0, 2, candidates);
   TermCandidate clipping = make("clipping", "limited on either side", "its limit");
   clipping.add = [name](ModelSpec& changed, const std::string& coefficient,
                         const std::vector<std::string>& scales) {

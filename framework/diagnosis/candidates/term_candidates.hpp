@@ -11,7 +11,8 @@ namespace twinmap {
 /// Of the duration: what recordings are read beside it, and signals go on by, for the delays that are tried.
 constexpr double kDelayMargin = 0.25;
 
-/// OwnScale::reach of what is limited: a limit near 0 would be a gain with a step at 0.
+/// OwnScale::reach of what is limited: a limit near 0 would be a gain with a step at 0, a dead zone as wide as
+/// the signal a gain.
 constexpr double kReachOfLimits = 2.0;
 
 /// Forces on each coordinate (damping, friction, springs, stops, a constant force) and between two of a kind.
