@@ -95,16 +95,22 @@ class Diagnoser {
     return options;
   }
 
-  /// The shared parameters over what was found and all that the recordings do not tell from it.
+  /// The shared parameters over what was found and all that the recordings do not tell from it; of a
+  /// posterior that is not reliable nothing is said.
   void average(const TermSearch& search, Diagnosis& diagnosis) const {
     std::vector<SimulatorPosterior> posteriors{diagnosis.after.posterior};
     std::vector<double> evidence{1.0};
-    if (diagnosis.found > 0) {
-      for (const AlternativeFit& other : search.getAlternatives()[diagnosis.found - 1]) {
-        const RecordingsProblem problem(other.experiment, recordings_);
-        posteriors.push_back(samplePosterior(problem.get(), other.point, makeFittedOptions()));
-        evidence.push_back(std::exp(other.log_evidence));
+    SimulatorPosteriorOptions options = makeFittedOptions();
+    options.spares_misfit = true;
+    const std::vector<AlternativeFit> none;
+    for (const AlternativeFit& other :
+         diagnosis.found > 0 ? search.getAlternatives()[diagnosis.found - 1] : none) {
+      if (!posteriors.back().isReliable()) {
+        return;
       }
+      const RecordingsProblem problem(other.experiment, recordings_);
+      posteriors.push_back(samplePosterior(problem.get(), other.point, options));
+      evidence.push_back(std::exp(other.log_evidence));
     }
     diagnosis.averaged = mix(posteriors, evidence, shared_);
   }
