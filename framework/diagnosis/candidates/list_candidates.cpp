@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "framework/diagnosis/augment.hpp"
@@ -25,6 +26,12 @@ void enlarge(const CoordinateSizes& by, std::vector<CoordinateSizes>& coordinate
 void enlarge(const std::vector<double>& from, std::vector<double>& to) {
   for (std::size_t i = 0; i < std::min(from.size(), to.size()); ++i) {
     to[i] = std::max(to[i], from[i]);
+  }
+}
+
+void enlarge(const std::vector<Extent>& from, std::vector<Extent>& to) {
+  for (std::size_t i = 0; i < std::min(from.size(), to.size()); ++i) {
+    to[i] = {std::max(to[i].largest, from[i].largest), std::min(to[i].least, from[i].least)};
   }
 }
 
@@ -94,6 +101,15 @@ void addScanned(const TermCandidate& candidate, double first, double factor, int
     candidates.push_back(candidate);
     candidates.back().own_scales.front().value = value;
   }
+}
+
+void addLimits(const TermCandidate& candidate, const Extent& extent, double first, double last, double factor,
+               std::vector<TermCandidate>& candidates) {
+  constexpr double kSmallest = 1.0 / 16.0;  // of the largest: a test that hardly moves shows no limits
+  const double from = first * std::max(extent.least, kSmallest * extent.largest);
+  const double ratio = last * extent.largest / from;
+  const int steps = std::max(1, static_cast<int>(std::ceil(std::log(ratio) / std::log(factor) - 1e-9)));
+  addScanned(candidate, from, std::pow(ratio, 1.0 / steps), steps + 1, candidates);
 }
 
 std::string writeBeyond(const std::string& value, const std::string& limit) {

@@ -73,6 +73,11 @@ double calcLargest(const NamedValues<double>& names, const Expression3& expressi
   return largest;
 }
 
+Extent calcExtent(const VectorXd& values) {
+  const double largest = values.cwiseAbs().maxCoeff();
+  return {largest, largest};
+}
+
 void setBodySizes(const ModelSpec& model, const NamedValues<double>& names, ModelSizes& sizes) {
   for (const BodySpec& body : model.system.bodies) {
     const double mass = names.calc(body.mass), moment = calcLargest(names, getMoments(body.inertia));
@@ -119,10 +124,10 @@ ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& poin
   setCoordinateSizes(forced, outputs, model.simulation.duration, sizes);
   auto column = static_cast<Index>(2 * forced.size());
   for (std::size_t o = 0; o < model.outputs.size(); ++o) {
-    sizes.outputs.push_back(outputs.col(column++).cwiseAbs().maxCoeff());
+    sizes.outputs.push_back(calcExtent(outputs.col(column++)));
   }
   for (std::size_t s = 0; s < model.excitation.size(); ++s) {
-    sizes.signals.push_back(outputs.col(column++).cwiseAbs().maxCoeff());
+    sizes.signals.push_back(calcExtent(outputs.col(column++)));
   }
   for (const CandidateSpec& candidate : experiment.candidates) {
     sizes.own_forces.emplace_back();

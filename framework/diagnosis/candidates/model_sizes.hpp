@@ -17,6 +17,11 @@ struct CoordinateSizes {
   double force = 0.0;  ///< of the size of inertia times rms q'', N or N m
 };
 
+/// The largest |x|, of the trial where it is largest and of the one where it is least.
+struct Extent {
+  double largest = 0.0, least = 0.0;
+};
+
 /// The sizes of a model at a point: how large a term must be to matter.
 struct ModelSizes {
   std::vector<CoordinateSizes> coordinates;  ///< those that move
@@ -25,8 +30,7 @@ struct ModelSizes {
   std::vector<double> moments;      ///< of a body: its largest moment of inertia, kg m2
   double mass = 0.0, moment = 0.0;  ///< of all bodies together
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();
-  std::vector<double> outputs;  ///< max |output|
-  std::vector<double> signals;  ///< max |signal|
+  std::vector<Extent> outputs, signals;
   /// rms of each of the experiment's candidates with a coefficient of 1, for each value of its scale
   std::vector<std::vector<double>> own_forces;
 };

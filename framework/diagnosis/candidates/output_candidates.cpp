@@ -112,7 +112,7 @@ void addLag(std::size_t index, const std::string& name, const OutputText& text, 
 }
 
 /// A sensor that shows nothing beyond a limit, where c is 1.
-void addClipping(std::size_t index, const std::string& name, const OutputText& text, double largest,
+void addClipping(std::size_t index, const std::string& name, const OutputText& text, const Extent& extent,
                  std::vector<TermCandidate>& candidates) {
   TermCandidate clipping =
       makeAdded(index, "clipping." + name,
@@ -122,7 +122,7 @@ void addClipping(std::size_t index, const std::string& name, const OutputText& t
                                const std::vector<std::string>& scales) {
     addToOutput(changed, index, fmt::format("-{}*{}", coefficient, writeBeyond(text.value, scales.front())));
   };
-  addScanned(clipping, 0.55 * largest, 1.6, 2, candidates);
+  addLimits(clipping, extent, 0.55, 0.88, 1.6, candidates);
 }
 
 /// All outputs recorded by a clock that is fast by the share c: a later sample is a still later state.
@@ -162,14 +162,14 @@ void addCrossTalk(const ModelSpec& model, const std::vector<OutputText>& texts,
 }
 
 /// Drift, clipping, delay and lag of an output that is a coordinate, a speed or an expression.
-void addOwnErrors(std::size_t index, const ModelSpec& model, const OutputText& text, double size,
+void addOwnErrors(std::size_t index, const ModelSpec& model, const OutputText& text, const Extent& extent,
                   std::vector<TermCandidate>& candidates) {
   constexpr double kLongDelay = 0.005, kShortestLag = 0.002;  // of the duration
   const std::string& name = model.outputs[index].name.text;
   const double duration = model.simulation.duration;
   candidates.push_back(makeAdded(index, "drift." + name, fmt::format("drift of output {}, c t", name),
-                                 makeRateUnit(text.unit), kLargeGain * size / duration, "t"));
-  addClipping(index, name, text, size, candidates);
+                                 makeRateUnit(text.unit), kLargeGain * extent.largest / duration, "t"));
+  addClipping(index, name, text, extent, candidates);
   // of one output alone, a delay is that of all signals
   if (!text.rate.empty() && (model.outputs.size() > 1 || model.excitation.empty())) {
     candidates.push_back(makeDelay(index, name, text, kLongDelay * duration));
@@ -186,8 +186,8 @@ std::vector<TermCandidate> listOutputCandidates(const ModelSpec& model, const Mo
   std::vector<OutputText> texts;
   for (std::size_t i = 0; i < model.outputs.size(); ++i) {
     texts.push_back(readOutput(model.outputs[i], model));
-    if (sizes.outputs[i] > 0.0) {
-      addGainAndOffset(i, model.outputs[i].name.text, texts[i].unit, sizes.outputs[i], candidates);
+    if (sizes.outputs[i].largest > 0.0) {
+      addGainAndOffset(i, model.outputs[i].name.text, texts[i].unit, sizes.outputs[i].largest, candidates);
       if (!texts[i].value.empty()) {
         addOwnErrors(i, model, texts[i], sizes.outputs[i], candidates);
       }

@@ -177,7 +177,7 @@ void addLag(const SignalSpec& signal, double shortest, std::vector<TermCandidate
 }
 
 /// What is around 0, or beyond a limit, is missing: all of it where c is 1.
-void addLimits(const SignalSpec& signal, double largest, std::vector<TermCandidate>& candidates) {
+void addLimitsOf(const SignalSpec& signal, const Extent& extent, std::vector<TermCandidate>& candidates) {
   const std::string name = signal.name.text;
   const auto make = [&](const char* kind, const char* meaning, const char* scale) {
     TermCandidate candidate;
@@ -194,14 +194,14 @@ void addLimits(const SignalSpec& signal, double largest, std::vector<TermCandida
                 fmt::format("{}*({} - {})", coefficient, writeBeyond(name, scales.front()), name));
   };
   dead_zone.own_scales.front().reach = kReachOfLimits;
-  addScanned(dead_zone, 0.1 * largest, 3.0, 2, candidates);
+  addLimits(dead_zone, extent, 0.1, 0.3, 3.0, candidates);
   TermCandidate clipping = make("clipping", "limited on either side", "its limit");
   clipping.add = [name](ModelSpec& changed, const std::string& coefficient,
                         const std::vector<std::string>& scales) {
     addToSignal(changed, name, fmt::format("-{}*{}", coefficient, writeBeyond(name, scales.front())));
   };
   clipping.own_scales.front().reach = kReachOfLimits;
-  addScanned(clipping, 0.55 * largest, 1.6, 2, candidates);
+  addLimits(clipping, extent, 0.55, 0.88, 1.6, candidates);
 }
 
 /// Of rectangles alone, whatever is around 0 or beyond a limit is a gain.
@@ -272,8 +272,8 @@ std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model, const Mo
       candidates.push_back(makeDelay(i, signal.name.text, kLongDelay * duration));
     }
     addLag(signal, kShortestLag * duration, candidates);
-    if (sizes.signals[i] > 0.0 && canBeLimited(signal)) {
-      addLimits(signal, sizes.signals[i], candidates);
+    if (sizes.signals[i].largest > 0.0 && canBeLimited(signal)) {
+      addLimitsOf(signal, sizes.signals[i], candidates);
     }
     if (canBeHeld(signal)) {
       candidates.push_back(makeHold(i, signal.name.text));

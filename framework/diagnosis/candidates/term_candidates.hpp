@@ -11,8 +11,8 @@ namespace twinmap {
 /// Of the duration: what recordings are read beside it, and signals go on by, for the delays that are tried.
 constexpr double kDelayMargin = 0.25;
 
-/// OwnScale::reach of what is limited: a limit near 0 would be a gain with a step at 0, a dead zone as wide as
-/// the signal a gain.
+/// OwnScale::reach of what is limited: a limit near 0 would be a gain with a step at 0, a dead zone as wide
+/// as the signal a gain.
 constexpr double kReachOfLimits = 2.0;
 
 /// Forces on each coordinate (damping, friction, springs, stops, a constant force) and between two of a kind.
@@ -46,6 +46,11 @@ std::vector<TermCandidate> listTrialCandidates(const ExperimentSpec& combined, s
 /// Once for each value of its first own scale, from `first` on, each `factor` times the one before.
 void addScanned(const TermCandidate& candidate, double first, double factor, int count,
                 std::vector<TermCandidate>& candidates);
+
+/// The same of a limit: values from `first` times the least extent to `last` times the largest, by a factor
+/// of at most `factor`.
+void addLimits(const TermCandidate& candidate, const Extent& extent, double first, double last, double factor,
+               std::vector<TermCandidate>& candidates);
 
 /// What of a value lies beyond -limit ... limit, as an expression.
 std::string writeBeyond(const std::string& value, const std::string& limit);
