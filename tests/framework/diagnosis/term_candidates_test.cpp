@@ -134,6 +134,23 @@ TEST(Candidates, HoldAndLimitSignalsAndOutputs) {
             1e-5 * motion.norm());
 }
 
+// Of two tests, one four times as large: from the smaller one's limits to the larger one's.
+TEST(Candidates, LimitsSpanTheExtentsOfAllTrials) {
+  const ExperimentSpec experiment = loadExperiment(kCart);
+  ModelSizes sizes = calcModelSizes(experiment, kTrueCart);
+  sizes.signals.front() = {4.0, 1.0};
+  std::vector<double> limits;
+  for (const TermCandidate& one : listSignalCandidates(experiment.model, sizes)) {
+    if (one.term == "clipping.F") {
+      limits.push_back(one.own_scales.front().value);
+    }
+  }
+  ASSERT_EQ(limits.size(), 5U);
+  EXPECT_NEAR(limits.front(), 0.55, 1e-12);
+  EXPECT_NEAR(limits.back(), 0.88 * 4.0, 1e-12);
+  EXPECT_LE(limits[1] / limits[0], 1.6);
+}
+
 // Exact derivatives at 0 against differences of simulations, each with the term alone.
 TEST(Candidates, HaveExactDerivatives) {
   const ExperimentSpec experiment =
