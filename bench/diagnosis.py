@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Holds `twinmap diagnose` to its bars on fifteen mechanisms of different kinds and writes a page.
+"""Holds `twinmap diagnose` to its bars on mechanisms of different kinds and writes a page.
 
 Usage: bench/diagnosis.py STUDY [--terms N] [--tests N] [--nothing N] [--gusts N] [--mechanism NAME ...] [--logs DIR] --out FILE
 
-STUDY is the program diagnosis_study (bench/framework/diagnosis). Of each mechanism, N terms that its recordings can show,
+STUDY is the program diagnosis_study (bench/framework/diagnosis); diagnosis_cost lies beside it. Of each mechanism, N terms that its recordings can show,
 spread evenly over the list of candidates, are missing from the model in turn, by 1.2 to 30 times chi-square; and nothing is.
 Then a random force acts on each coordinate in turn. --logs keeps what STUDY prints of each term, and takes what is there
 already instead of running it again.
@@ -30,6 +30,10 @@ MECHANISMS = [
     "bench/framework/diagnosis/gantry.yaml",
     "bench/framework/diagnosis/sprung_beam.yaml",
     "bench/framework/diagnosis/geared_motor.yaml",
+    "bench/framework/diagnosis/two_joint_arm.yaml",
+    "bench/framework/diagnosis/rotary_pendulum.yaml",
+    "bench/framework/diagnosis/flexible_joint.yaml",
+    "bench/framework/diagnosis/half_car.yaml",
 ]
 LINE = re.compile(
     r"(?P<term>\S+)\s+(?P<tests>\d+) chi2/n\s+(?P<ratio>\S+) first\s+(?P<first>\d+) tied\s+(?P<tied>\d+) "
@@ -49,6 +53,17 @@ identification without a known noise has it, such as mujoco.sysid), and after th
 | the truth has | chi-square / n | first or tied | noise alone | residual scaled | after |
 |---|--:|--:|---|---|---|
 """
+COST_HEAD = """
+## What all scores cost
+
+From one recording, milliseconds of a processor, the median of seven: candidates without states, then all of them.
+
+| mechanism | without states | ms | all | ms |
+|---|--:|--:|--:|--:|
+"""
+COST = re.compile(
+    r"(?P<file>\S+)\s+without states\s+(?P<plain>\d+)\s+(?P<plain_ms>\S+) ms, all\s+(?P<all>\d+)\s+(?P<all_ms>\S+) ms"
+)
 MISSED_HEAD = """
 ## Not named each time
 
@@ -122,6 +137,18 @@ def make_row(name, missing, nothing, processes):
     )
 
 
+def make_costs(study, files):
+    program = Path(study).with_name("diagnosis_cost")
+    printed = subprocess.run(
+        [program] + [str(ROOT / file) for file in files], capture_output=True, text=True, check=True
+    ).stdout
+    text = COST_HEAD
+    for row in filter(None, map(COST.match, printed.splitlines())):
+        cells = (Path(row["file"]).stem, row["plain"], row["plain_ms"], row["all"], row["all_ms"])
+        text += f"| {' | '.join(cells)} |\n"
+    return text
+
+
 def make_shapes(study, logs):
     """What a term that the model lacks does to intervals, by each parameter."""
     text = SHAPE_HEAD
@@ -176,7 +203,8 @@ def main():
         page = HEAD + table + total + (f"\nNot measured: {', '.join(left)}.\n" if left else "") + named
         arguments.out.write_text(page)  # what is finished is kept
     if MECHANISMS[0] in chosen:
-        arguments.out.write_text(page + make_shapes(arguments.study, arguments.logs))
+        page += make_shapes(arguments.study, arguments.logs)
+    arguments.out.write_text(page + make_costs(arguments.study, chosen))
 
 
 if __name__ == "__main__":
