@@ -2,13 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/diagnosis/score_test.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -20,6 +21,8 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kSmallestChange = 1e-300;
+
 /// A test of a model with a term at its fit: residuals, and their derivatives by what all tests share (the
 /// machine's parameters and the term's own) and by what is the test's own.
 struct FittedTest {
@@ -29,13 +32,14 @@ struct FittedTest {
 
 /// With all signals `factor` times as large, against the recordings as they are: differences between terms do
 /// not depend on these.
-FittedTest linearizeTest(const FittedTerm& fitted, const RecordedFeatures& recordings, double factor) {
+FittedTest linearizeTest(const FittedTerm& fitted, const RecordedFeatures& recordings, double factor,
+                         const VectorXd& point) {
   ExperimentSpec experiment = fitted.augmented.experiment;
   if (factor != 1.0) {
     changeTrials(experiment, [&](ExperimentSpec& one) { scaleSignals(one.model, factor); });
   }
   const auto shared = static_cast<Index>(experiment.model.parameters.size());
-  const LinearizedRecordings linear = RecordingsProblem(experiment, recordings).linearize(fitted.point);
+  const LinearizedRecordings linear = RecordingsProblem(experiment, recordings).linearize(point);
   return {linear.residual, linear.jacobian.leftCols(shared),
           linear.jacobian.rightCols(linear.jacobian.cols() - shared)};
 }
@@ -44,7 +48,7 @@ std::vector<FittedTest> linearizeAll(const std::vector<const FittedTerm*>& tied,
                                      const RecordedFeatures& recordings, double factor) {
   std::vector<FittedTest> tests;
   for (const FittedTerm* fitted : tied) {
-    tests.push_back(linearizeTest(*fitted, recordings, factor));
+    tests.push_back(linearizeTest(*fitted, recordings, factor, fitted->point));
   }
   return tests;
 }
@@ -56,6 +60,43 @@ double calcToldChiSquare() {
   constexpr double kQuantile = 1.645;  // of the normal distribution at 95 %
   const double root = kQuantile + std::sqrt(kQuantile * kQuantile + 2.0 * kTiedEvidence);
   return root * root;
+}
+
+/// What moves the second test's response most of all that changes shared parameters by one standard deviation
+/// as the first test leaves them, within their bounds.
+VectorXd calcLargestChange(const FittedTerm& fitted, const FittedTest& first, const FittedTest& second) {
+  const std::vector<ParameterSpec>& parameters = fitted.augmented.experiment.model.parameters;
+  const VectorXd half_widths = 0.5 * calcWidths(parameters);
+  const MatrixXd scaled = first.shared * half_widths.asDiagonal();
+  MatrixXd information = scaled.transpose() * scaled;
+  information.diagonal().array() += kHalfWidthInformation;
+  const MatrixXd inverse = linalg::solveCholesky(linalg::calcCholesky(information).lower,
+                                                 MatrixXd::Identity(information.rows(), information.cols()));
+  const MatrixXd root = half_widths.asDiagonal() * linalg::calcCholesky(inverse).lower;
+  const MatrixXd moves = second.shared * root;
+  VectorXd change = root * linalg::calcSymmetricEigen(moves.transpose() * moves).vectors.rightCols(1);
+  double fits = 1.0;
+  for (Index i = 0; i < change.size(); ++i) {
+    const Bounds& bounds = parameters[static_cast<std::size_t>(i)].bounds;
+    const double room = change[i] > 0.0 ? bounds.upper - fitted.point[i] : fitted.point[i] - bounds.lower;
+    fits = std::min(fits, std::max(room, 0.0) / std::max(std::abs(change[i]), kSmallestChange));
+  }
+  return fits * change;
+}
+
+/// Whether what the first test leaves open changes the second one's response as the linear model has it, by
+/// half at least or up to the noise. Else, as where a pendulum goes over the top, no fit to both is sure to
+/// end where it should.
+bool isPredictable(const FittedTerm& fitted, const RecordedFeatures& recordings, double factor,
+                   const FittedTest& first, const FittedTest& second) {
+  constexpr double kShare = 0.5, kNoise = 2.0;
+  VectorXd moved = fitted.point;
+  const VectorXd change = calcLargestChange(fitted, first, second);
+  moved.head(change.size()) += change;
+  const VectorXd linear = second.shared * change;
+  const FittedTest there = linearizeTest(fitted, recordings, factor, moved);
+  const double missed = (second.residual - there.residual - linear).norm();
+  return missed < std::max(kShare * linear.norm(), kNoise);
 }
 
 /// The chi-square, less the noise, behind which a model ends that is fitted to two tests of a machine with
@@ -88,13 +129,18 @@ bool tells(const std::vector<FittedTest>& first, const std::vector<FittedTest>& 
   return true;
 }
 
-/// None where one of the models cannot be simulated so.
-std::optional<std::vector<FittedTest>> tryTest(const std::vector<const FittedTerm*>& tied,
-                                               const RecordedFeatures& recordings, double factor) {
+/// Also not where one of the models cannot be simulated so.
+bool tellsWith(double factor, const std::vector<const FittedTerm*>& tied, const RecordedFeatures& recordings,
+               const std::vector<FittedTest>& first) {
   try {
-    return linearizeAll(tied, recordings, factor);
+    const std::vector<FittedTest> second = linearizeAll(tied, recordings, factor);
+    bool told = tells(first, second);
+    for (std::size_t i = 0; i < tied.size() && told; ++i) {
+      told = isPredictable(*tied[i], recordings, factor, first[i], second[i]);
+    }
+    return told;
   } catch (const std::runtime_error&) {
-    return {};
+    return false;
   }
 }
 
@@ -107,8 +153,7 @@ std::string adviseSecondTest(const ExperimentSpec& experiment, const RecordedFea
   }
   const std::vector<FittedTest> first = linearizeAll(tied, recordings, 1.0);
   for (const double factor : {2.0, 0.5, 4.0}) {
-    const std::optional<std::vector<FittedTest>> second = tryTest(tied, recordings, factor);
-    if (second && tells(first, *second)) {
+    if (tellsWith(factor, tied, recordings, first)) {
       return fmt::format("a second test at {} times the amplitude would", toText(factor));
     }
   }
