@@ -41,7 +41,7 @@ MACHINES = [
         [10, 15],
         {"M": "95.11", "Fv": "203.5", "coulomb_q": "20.39", "constant_force_q": "3.16"},
         ["coulomb.q", "constant_force.q"],
-        """Friction is found first, then a constant force, then a gain of the voltage, which nothing on the machine has: the measured voltage is larger than that of the loop at the same motion. If it is the loop's own gain that differs, forces are larger by as much: the first window alone, with these terms, is explained with M 86.3 kg, Fv 159 N s/m and a friction of 20.7 N, which times the gain of 1.098 are 94.8, 175 and 22.7, close to the published ones. Of both windows together the posterior is not reliable: no corrected parameters, and predictions are worse.""",
+        """Friction is found first, then a constant force, then a gain of the voltage, which nothing on the machine has: the measured voltage is larger than that of the loop at the same motion. If it is the loop's own gain that differs, forces are larger by as much: the first window alone, with an offset of the voltage in the place of the force, is explained with M 86.3 kg, Fv 159 N s/m and a friction of 20.7 N, which times the gain of 1.098 are 94.8, 175 and 22.7, close to the published ones. Of both windows together the posterior is not reliable: no corrected parameters, and predictions are worse.""",
     ),
     Machine(
         "fork",
