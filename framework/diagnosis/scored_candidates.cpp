@@ -62,17 +62,6 @@ std::vector<Index> listOthers(Index columns, Index first, Index count) {
   return others;
 }
 
-/// Standard deviations of parameters with the derivatives `jacobian`, each within its bounds.
-VectorXd calcLinearStddevs(const MatrixXd& jacobian, const std::vector<ParameterSpec>& unknown) {
-  const VectorXd half_widths = 0.5 * calcWidths(unknown);
-  const MatrixXd scaled = jacobian * half_widths.asDiagonal();
-  MatrixXd hessian = scaled.transpose() * scaled;
-  hessian.diagonal().array() += kHalfWidthInformation;
-  const MatrixXd inverse = linalg::solveCholesky(linalg::calcCholesky(hessian).lower,
-                                                 MatrixXd::Identity(hessian.rows(), hessian.cols()));
-  return inverse.diagonal().cwiseSqrt().cwiseProduct(half_widths);
-}
-
 /// The starts of a search: without the term, and with what its score says of all parameters.
 MatrixXd makeTermStarts(const VectorXd& point, const AugmentedExperiment& augmented, Index p,
                         const TermScore& score, const TermCandidate& candidate) {
@@ -157,6 +146,14 @@ std::vector<std::vector<TermCandidate>> splitByStates(const std::vector<TermCand
 
 }  // namespace
 
+MatrixXd calcBoundedCovariance(const MatrixXd& jacobian, const VectorXd& half_widths) {
+  const MatrixXd scaled = jacobian * half_widths.asDiagonal();
+  MatrixXd information = scaled.transpose() * scaled;
+  information.diagonal().array() += kHalfWidthInformation;
+  return linalg::solveCholesky(linalg::calcCholesky(information).lower,
+                               MatrixXd::Identity(information.rows(), information.cols()));
+}
+
 LinearizedRecordings addScalePriors(const LinearizedRecordings& linear, Index first,
                                     const TermCandidate& candidate, const VectorXd& point) {
   const auto scales = static_cast<Index>(candidate.own_scales.size());
@@ -218,7 +215,9 @@ ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const Recorde
     appendDerivatives(experiment, recordings, point, part, unknown, linear, terms);
   }
   scored.test = std::make_unique<ScoreTest>(linear.residual, linear.jacobian, terms);
-  scored.stddevs = calcLinearStddevs(linear.jacobian, unknown);
+  const VectorXd half_widths = 0.5 * calcWidths(unknown);
+  scored.stddevs =
+      calcBoundedCovariance(linear.jacobian, half_widths).diagonal().cwiseSqrt().cwiseProduct(half_widths);
   for (Index k = 0; k < terms.cols(); ++k) {
     scored.scores.push_back(scored.test->calcScore(k, scored.candidates[static_cast<std::size_t>(k)].size));
     scored.tested += scored.scores.back().visible ? 1 : 0;

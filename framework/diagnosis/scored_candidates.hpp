@@ -40,6 +40,10 @@ struct FittedTerm {
   double log_evidence_of_scales = 0.0;  ///< what the freedom of own scales costs, at most 0
 };
 
+/// The covariance of parameters with the derivatives `jacobian` (n x u), their bounds as weak information, in
+/// half widths of these (u).
+Eigen::MatrixXd calcBoundedCovariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& half_widths);
+
 /// The derivatives with what is known of a term's own scales before any recording, as further residuals:
 /// their priors are uniform in the logarithm. first: column of its coefficient, before those of its scales.
 LinearizedRecordings addScalePriors(const LinearizedRecordings& linear, Eigen::Index first,

@@ -67,12 +67,8 @@ double calcToldChiSquare() {
 VectorXd calcLargestChange(const FittedTerm& fitted, const FittedTest& first, const FittedTest& second) {
   const std::vector<ParameterSpec>& parameters = fitted.augmented.experiment.model.parameters;
   const VectorXd half_widths = 0.5 * calcWidths(parameters);
-  const MatrixXd scaled = first.shared * half_widths.asDiagonal();
-  MatrixXd information = scaled.transpose() * scaled;
-  information.diagonal().array() += kHalfWidthInformation;
-  const MatrixXd inverse = linalg::solveCholesky(linalg::calcCholesky(information).lower,
-                                                 MatrixXd::Identity(information.rows(), information.cols()));
-  const MatrixXd root = half_widths.asDiagonal() * linalg::calcCholesky(inverse).lower;
+  const MatrixXd covariance = calcBoundedCovariance(first.shared, half_widths);
+  const MatrixXd root = half_widths.asDiagonal() * linalg::calcCholesky(covariance).lower;
   const MatrixXd moves = second.shared * root;
   VectorXd change = root * linalg::calcSymmetricEigen(moves.transpose() * moves).vectors.rightCols(1);
   double fits = 1.0;
