@@ -100,9 +100,13 @@ class FieldCheck {
       check(field, unit);
     }
   }
+  /// A struct of a list refers to coordinates of its own, whatever those before it act on.
   template <class T, class... Rule>
   void check(const std::vector<T>& fields, const Rule&... rule) {
     for (const T& field : fields) {
+      if constexpr (!std::is_same_v<T, Expression>) {
+        on_angle_ = false;
+      }
       check(field, rule...);
     }
   }

@@ -5,7 +5,9 @@
 
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/experiment/check/check_scope.hpp"
+#include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/expression/units.hpp"
+#include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {
 namespace {
@@ -120,6 +122,21 @@ TEST(Units, AreParsedByAnyThread) {
     thread.join();
   }
   EXPECT_EQ(wrong, 0);
+}
+
+TEST(ElementUnits, DoNotFollowTheCoordinateOfAnotherElement) {
+  const std::string contact =
+      "system.contacts=[{body: beam1, plane: {normal: [0, 1, 0]}, stiffness: c, exponent: 1.5, dissipation: "
+      "w}]";
+  const std::string only_torsion = "system.springs=[{coordinate: theta, stiffness: k_theta + 0*k_y/k_y}]";
+  const std::string wear = "constants.w={value: 0.1, unit: s/m}";
+  for (const char* springs : {"seed=1", only_torsion.c_str()}) {
+    EXPECT_NO_THROW(
+        loadExperiment(kTable1, {springs, "constants.c={value: 100, unit: N/m^1.5}", wear, contact}));
+    EXPECT_THROW(
+        loadExperiment(kTable1, {springs, "constants.c={value: 100, unit: N m/rad^1.5}", wear, contact}),
+        ExperimentError);
+  }
 }
 
 }  // namespace
