@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -152,6 +153,15 @@ bool hasColumns(const Table& table, const MeasuredSignalSpec& spec) {
                      [&](const std::string& name) { return findColumn(table, name) != nullptr; });
 }
 
+/// The recording where it has the columns; else, where the start has moved, the signal's own file, which
+/// shares the recording's time. nullopt where neither has anything new.
+std::optional<Table> findFollowed(const Table& recording, const MeasuredSignalSpec& spec, double shift) {
+  if (hasColumns(recording, spec)) {
+    return recording;
+  }
+  return shift == 0.0 ? std::nullopt : std::make_optional(readTable(spec.file.text, listColumns(spec)));
+}
+
 template <class Action>
 void visitMeasured(ExperimentSpec& experiment, const Action& action) {
   for (SignalSpec& signal : experiment.model.excitation) {
@@ -191,12 +201,13 @@ bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, d
   bool changed = false;
   visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
     const MeasuredSignalSpec& spec = *target.measured;
-    if (!hasColumns(recording, spec)) {
+    const std::optional<Table> followed = findFollowed(recording, spec, shift);
+    if (!followed) {
       return;
     }
     TableSpec own = target;
     const Bounds delays = calcDelays(experiment.model, target);
-    fillRecorded(own, recording, signal.unit, spec.start + shift, experiment.model.simulation.duration,
+    fillRecorded(own, *followed, signal.unit, spec.start + shift, experiment.model.simulation.duration,
                  {delays.lower - beside, delays.upper + beside, {}});
     changed = changed || own.times != target.times || own.values != target.values;
     target = std::move(own);

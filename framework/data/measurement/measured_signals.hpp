@@ -16,8 +16,9 @@ void loadMeasuredSignals(ExperimentSpec& experiment);
 void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, double start);
 
 /// The same tables by the columns of a recording, where it has them, `shift` (s) after their own starts;
-/// `beside` (s) more at both ends, where the recording ends by its first and last value. Whether any value
-/// changed. Throws MeasurementError where the recording has a gap, or does not cover the simulation.
+/// where it has not and `shift` is not 0, by their own files, whose time is the recording's. `beside` (s)
+/// more at both ends, where the recording ends by its first and last value. Whether any value changed. Throws
+/// MeasurementError, naming the file, where it cannot be read, has a gap, or does not cover the simulation.
 bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double shift, double beside);
 
 /// The measured tables of a signal go on for `beside` (s) before and after the simulation, by their first and

@@ -54,6 +54,30 @@ TEST_F(MeasuredSignals, AreFilledWithAFewSamplesBeside) {
   }
 }
 
+TEST_F(MeasuredSignals, OfAFileOfTheirOwnFollowTheStart) {
+  loadMeasuredSignals(experiment_);
+  const Table response{"y.csv", {}, {}};
+  EXPECT_FALSE(followMeasuredSignals(experiment_, response, 0.0, 0.0));
+  for (const double shift : {3.0, -1.5}) {
+    ExperimentSpec followed = experiment_;
+    ASSERT_TRUE(followMeasuredSignals(followed, response, shift, 0.0));
+    const TableSpec& table = followed.model.excitation[0].tables[0];
+    for (std::size_t i = 0; i < table.times.size(); ++i) {
+      EXPECT_NEAR(table.values[i], 1e4 * (table.times[i] + 2.0 + shift), 1e-9);
+    }
+  }
+}
+
+TEST_F(MeasuredSignals, OfAFileThatDoesNotCoverTheStartAreRefusedByName) {
+  loadMeasuredSignals(experiment_);
+  try {
+    followMeasuredSignals(experiment_, Table{"y.csv", {}, {}}, 9.0, 0.0);
+    FAIL();
+  } catch (const MeasurementError& error) {
+    EXPECT_NE(std::string(error.what()).find("a.csv: covers"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(MeasuredSignals, AreReadOnce) {
   updTable().times = {0.0, 1.0};
   updTable().values = {3.0, 4.0};
