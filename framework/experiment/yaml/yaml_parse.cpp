@@ -10,6 +10,7 @@
 #include <sstream>
 #include <unordered_set>
 
+#include "framework/experiment/yaml/yaml_layout.hpp"
 #include "framework/experiment/yaml/yaml_node.hpp"
 
 namespace twinmap {
@@ -34,15 +35,21 @@ bool isIndentedByTab(const std::string& text, int line) {
   return found.substr(0, found.find_first_not_of(" \t")).find('\t') != std::string::npos;
 }
 
-/// What yaml-cpp says, in the file's own signs where it names brackets.
+/// What yaml-cpp says, in the file's own signs where it names brackets, or what it says of indentation.
 std::string describe(const YAML::Exception& error, const std::string& text) {
   const std::string& problem = error.msg;
   if (isIndentedByTab(text, error.mark.line)) {
     return "the line is indented by a tab, where YAML takes spaces";
   }
-  return problem == "end of sequence flow not found" ? "a list that begins with '[' is not closed by ']'"
-         : problem == "end of map flow not found"    ? "a map that begins with '{' is not closed by '}'"
-                                                     : problem;
+  const std::string quotes = " here; a text that holds a bracket, ': ' or a comma needs quotes";
+  if (problem == "end of sequence flow not found") {
+    return "a list that begins with '[' is not closed by ']'" + quotes;
+  }
+  if (problem == "end of map flow not found") {
+    return "a map that begins with '{' is not closed by '}'" + quotes;
+  }
+  const std::string layout = describeLayout(text, error.mark.line);
+  return layout.empty() ? problem : layout;
 }
 
 /// Builds the tree from yaml-cpp's events. Containers under construction are on a stack; a map also holds

@@ -42,6 +42,31 @@ TEST(YamlNode, RefusesWhatWouldBeMisread) {
   EXPECT_EQ(getYamlError("a: [1, 2\n").rfind("f.yaml:2:", 0), 0u);
 }
 
+TEST(YamlNode, SaysWhereALineIsToBegin) {
+  const auto says = [](const std::string& lines, const std::string& words) {
+    EXPECT_NE(getYamlError("name: cart\nsystem:\n" + lines).find(words), std::string::npos)
+        << getYamlError("name: cart\nsystem:\n" + lines);
+  };
+  says(
+      "    bodies:\n      - {name: b}\n  springs: []\n",
+      "f.yaml:5:3: is not valid YAML: the line begins at column 3, between two levels: indent it like line 3 "
+      "(column 5) or like line 2 (column 1)");
+  says("  bodies:\n    - name: b\n     mass: 1\n",
+       "begins at column 6, between two levels: indent it like line 4 (column 7) or like line 4 (column 5)");
+  says("  bodies:\n    # of steel\n    - {name: b}\n     - {name: c}\n",
+       "further right than the one before it, which has its value already: indent it like line 5 (column 5)");
+  says("  bodies:\n    - {name: b}\n  - {name: c}\n",
+       "the item stands beside the keys of line 3 (column 3): indent it like line 4 (column 5)");
+  says("  bodies:\n    - name: b\n       mass: 1\n",
+       "further right than the one before it, which has its value already: indent it like line 4 (column 7)");
+}
+
+TEST(YamlNode, AsksForQuotesWhereABracketOrAColonCutsAText) {
+  for (const char* text : {"a: {force: F > 0 ? 1 : 2}\n", "a: {column: F [N]}\n", "a: [x, F [N]]\n"}) {
+    EXPECT_NE(getYamlError(text).find("needs quotes"), std::string::npos) << text << getYamlError(text);
+  }
+}
+
 TEST(YamlNode, AnEmptyFileHasAPlaceToo) {
   EXPECT_EQ(parseYaml("", "f.yaml").where.file, "f.yaml");
   EXPECT_EQ(getYamlError(std::string("a: 1\nb: \0", 9)).rfind("f.yaml:2:1: has a NUL byte", 0), 0u);
