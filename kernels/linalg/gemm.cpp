@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "kernels/linalg/openblas.hpp"
 #include "kernels/linalg/packet.hpp"
 
 namespace twinmap::linalg {
@@ -177,11 +176,6 @@ GemmScratch::GemmScratch()
       right_(kBlockDepth * roundUp(kBlockCols, kTileCols)) {}
 
 void gemm(double alpha, ConstView a, ConstView b, double beta, View c, GemmScratch& scratch, Part part) {
-#ifdef TWINMAP_OPENBLAS
-  if (a.cols >= kOpenblasDepth) {
-    return multiplyByOpenblas(alpha, a, b, beta, c, part);
-  }
-#endif
   if (a.cols == 0 && beta == 0.0) {
     clear(c);
   }

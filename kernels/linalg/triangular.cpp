@@ -17,11 +17,6 @@ constexpr Index kPanel = 64;           // triangular operands up to this order a
 constexpr Index kChunkVectors = 4;     // independent sums: they hide the latency of multiplying and adding
 constexpr double kTeamFlops = 2e7;     // half a millisecond: a hundred times what waking a team costs
 constexpr Index kStripsPerThread = 4;  // strips of unequal work: dealt one by one, they even out
-#ifdef TWINMAP_OPENBLAS
-constexpr bool kSharesProducts = false;  // see openblas.hpp
-#else
-constexpr bool kSharesProducts = true;
-#endif
 
 Index halfOf(Index n) {
   return (n / 2 + kBase - 1) / kBase * kBase;
@@ -199,7 +194,7 @@ void multiplyTransposedLowerFromLeft(ConstView lower, View b, TriangularScratch&
 }  // namespace
 
 TriangularScratch::TriangularScratch(Index size, int threads)
-    : gemm_(kSharesProducts ? threads : 1), block_(padded(std::max(size, kPanel)) * kPanel) {}
+    : gemm_(threads), block_(padded(std::max(size, kPanel)) * kPanel) {}
 
 // Strips of columns; more strips than threads, because with kLower they differ in work.
 void TriangularScratch::multiply(double alpha, ConstView a, ConstView b, double beta, View c, Part part) {

@@ -5,17 +5,6 @@
 
 namespace twinmap {
 
-enum class Integrator { kDopri5, kRungeKuttaMerson, kCpodes };
-
-template <>
-struct EnumNames<Integrator> {
-  static constexpr EnumName<Integrator> values[] = {
-      {"dopri5", Integrator::kDopri5},
-      {"runge_kutta_merson", Integrator::kRungeKuttaMerson},
-      {"cpodes", Integrator::kCpodes},
-  };
-};
-
 /// What evaluates the equations of motion; kAutomatic: lanes where they can.
 enum class Engine { kAutomatic, kLanes, kSimbody };
 
@@ -47,7 +36,6 @@ struct Tolerance {
 struct SimulationSpec {
   double duration = 0.0;  ///< s; above 0 where features are made of outputs
   Engine engine = Engine::kAutomatic;
-  Integrator integrator = Integrator::kDopri5;
   /// Local error per step, relative to the state, and absolute, in the state's own units.
   Tolerance relative_tolerance = Tolerance::makeAutomatic(3e-7);
   Tolerance absolute_tolerance = Tolerance::makeAutomatic(1e-9);
@@ -65,7 +53,6 @@ void describe(Fields& f, SimulationSpec& s) {
   f.optional("duration", s.duration, "simulated time; s; needed for features of outputs", kNonNegative);
   f.optional("engine", s.engine,
              "several samples at a time in lanes, or Simbody; automatic: lanes if they can");
-  f.optional("integrator", s.integrator, "dopri5, or one of Simbody's as a cross-check");
   f.optional("relative_tolerance", s.relative_tolerance,
              "local error per step, relative; automatic: as the noise asks for", kRelative);
   f.optional("absolute_tolerance", s.absolute_tolerance,

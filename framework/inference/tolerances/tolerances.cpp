@@ -120,7 +120,7 @@ void logTightened(const ModelSpec& model, const IntegrationError& error, const T
 bool canFollow(const ExperimentSpec& experiment) {
   const ModelSpec& model = experiment.model;
   return !collectOutputs(experiment.features).empty() && experiment.noise.scale > 0.0 &&
-         !(model.source && model.source->program) && model.simulation.integrator == Integrator::kDopri5;
+         !(model.source && model.source->program);
 }
 
 void followOne(ExperimentSpec& experiment) {

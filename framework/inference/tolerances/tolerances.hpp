@@ -12,11 +12,11 @@ namespace twinmap {
 /// noticeably (IntegrationError), those that are automatic are tightened by powers of ten until it does not,
 /// and the log says from what, to what and why. Those that the file gives stay: too coarse ones are a
 /// warning, which names their place and what would do. Afterwards none is automatic. Nothing is compared
-/// where features have no noise, nothing is integrated, or an integrator of Simbody's or a program has an
-/// accuracy of its own. Warns of onset speeds of friction on which estimates depend (onset_speeds.hpp). The
-/// result depends on model, features and noise alone. Throws ExperimentError where
-/// the model cannot be simulated. Cost: 32 simulations, 16 with derivatives where the error is not far below
-/// the noise, and 32 for each further tolerance that is tried; in lanes some milliseconds.
+/// where features have no noise, nothing is integrated, or a program has an accuracy of its own. Warns of
+/// onset speeds of friction on which estimates depend (onset_speeds.hpp). The result depends on model,
+/// features and noise alone. Throws ExperimentError where the model cannot be simulated. Cost: 32
+/// simulations, 16 with derivatives where the error is not far below the noise, and 32 for each further
+/// tolerance that is tried; in lanes some milliseconds.
 ExperimentSpec followNoise(ExperimentSpec experiment);
 
 /// The same of the cases of a sweep, once for those that differ in none of the three. Cases of one model

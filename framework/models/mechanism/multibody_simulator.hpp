@@ -13,8 +13,8 @@ enum class ModelCheck { kBySimbody, kTrusted };
 /// Simulates a multibody system that is described by data. By default in lanes: the equations of motion are
 /// recorded once, compared with Simbody's, and integrated for several samples at a time
 /// (docs/explanation/built-in-solver.md); where that is not possible, Simbody builds them anew for every
-/// sample. The default integrator of either is a Dormand-Prince 5(4) pair with dense output. A sample that
-/// reaches the step limit in lanes is tried once more by CPodes.
+/// sample. Either integrates by a Dormand-Prince 5(4) pair with dense output. A sample that reaches the step
+/// limit in lanes is tried once more by an implicit method (stiff_retry.hpp).
 class MultibodySimulator final : public Simulator {
  public:
   /// `times`: where the outputs are sampled, s, strictly increasing within [0, duration]; nothing is

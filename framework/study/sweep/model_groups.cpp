@@ -34,7 +34,7 @@ class GroupKeys {
     ResponseLayout layout;
     layout.output_names = collectNames(model.outputs);
     layout.modes = countModes(one.experiment.features);
-    if (model.simulation.integrator != Integrator::kDopri5) {
+    if (model.simulation.engine == Engine::kSimbody && !model.system.constraints.empty()) {
       layout.times = times;
     }
     const std::string of_layout(getBits(layout.times.data(), layout.times.size()));

@@ -19,8 +19,9 @@ struct ModelGroup {
 
 /// Groups the cases by what determines their responses (writeTrajectoryContent). Cases that differ in their
 /// features' times share simulations at all of these times: the response at a time does not depend on which
-/// others are asked for. Only twinmap's own integrator keeps that bit for bit; with Simbody's, times differ
-/// between groups. In the order of their first cases.
+/// others are asked for. Only twinmap's own integrator keeps that bit for bit; with Simbody's, which
+/// moves machines with loops where its engine is asked for, times differ between groups. In the order of
+/// their first cases.
 std::vector<ModelGroup> groupByModel(const std::vector<SweepCase>& cases);
 
 /// Training and test points of the cases of the group that `wanted` (one per case) asks for, each point once:

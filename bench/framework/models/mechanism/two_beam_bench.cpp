@@ -67,9 +67,8 @@ void NaiveSimbody(benchmark::State& state) {
   });
 }
 
-void runTwinmap(benchmark::State& state, Integrator integrator) {
+void Twinmap(benchmark::State& state) {
   ModelSpec model = makeTwoBeam();
-  model.simulation.integrator = integrator;
   model.simulation.engine = Engine::kSimbody;
   MultibodySimulator simulator(model, getReference().times);
   Eigen::MatrixXd response(2 * getReference().times.size(), 1);
@@ -78,16 +77,6 @@ void runTwinmap(benchmark::State& state, Integrator integrator) {
     simulator.simulate(getReference().points.col(j), response, &status);
     return Eigen::MatrixXd(response.reshaped(getReference().times.size(), 2).transpose());
   });
-}
-
-void Twinmap(benchmark::State& state) {
-  runTwinmap(state, Integrator::kDopri5);
-}
-void TwinmapRungeKuttaMerson(benchmark::State& state) {
-  runTwinmap(state, Integrator::kRungeKuttaMerson);
-}
-void TwinmapCpodes(benchmark::State& state) {
-  runTwinmap(state, Integrator::kCpodes);
 }
 
 /// 256 samples in lanes on one thread, with their derivatives or without; time and processor time a sample.
@@ -120,8 +109,6 @@ void Generate250(benchmark::State& state) {
 
 BENCHMARK(NaiveSimbody)->Unit(benchmark::kMillisecond);
 BENCHMARK(Twinmap)->Unit(benchmark::kMillisecond);
-BENCHMARK(TwinmapRungeKuttaMerson)->Unit(benchmark::kMillisecond);
-BENCHMARK(TwinmapCpodes)->Unit(benchmark::kMillisecond);
 BENCHMARK(TwinmapLanes)->ArgName("derivatives")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 BENCHMARK(Generate250)->ArgName("threads")->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 

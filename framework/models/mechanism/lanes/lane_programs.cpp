@@ -12,9 +12,6 @@ std::string findObstacle(const ModelContext& context) {
   if (context.model.simulation.engine == Engine::kSimbody) {
     return "simulation.engine asks for it";
   }
-  if (context.model.simulation.integrator != Integrator::kDopri5) {
-    return "simulation.integrator is one of Simbody's";
-  }
   return context.names.getCoordinateNames().empty() ? "nothing can move" : "";
 }
 

@@ -29,8 +29,8 @@ struct SampleRun {
 /// the error and keeps there the steps it took. Returns the reason of a failure, or "".
 std::string runDopri5(const SampleRun& run, StepSequence& sequence);
 
-/// Runs with one of Simbody's own integrators, restarted at every event, at accuracy `relative_tolerance`;
-/// returns the reason of a failure, or "".
+/// Runs with Simbody's integrator by Runge, Kutta and Merson, which keeps loops closed, restarted at every
+/// event, at accuracy `relative_tolerance`; returns the reason of a failure, or "".
 std::string runSimbody(const SampleRun& run);
 
 }  // namespace twinmap

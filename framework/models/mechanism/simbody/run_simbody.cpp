@@ -1,17 +1,7 @@
-#include <memory>
-
 #include "framework/models/mechanism/simbody/run_sample.hpp"
 
 namespace twinmap {
 namespace {
-
-std::unique_ptr<SimTK::Integrator> makeIntegrator(const SampleRun& run) {
-  const SimTK::MultibodySystem& system = run.system.getTree().getSystem();
-  if (run.simulation.integrator == Integrator::kCpodes) {
-    return std::make_unique<SimTK::CPodesIntegrator>(system, SimTK::CPodes::BDF, SimTK::CPodes::Newton);
-  }
-  return std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system);
-}
 
 class SimbodyRun {
  public:
@@ -39,25 +29,25 @@ class SimbodyRun {
  private:
   void runPhase(double begin, double end) {
     run_.excitation.beginPhase(begin);
-    const std::unique_ptr<SimTK::Integrator> integrator = makeIntegrator(run_);
-    integrator->setAccuracy(run_.simulation.relative_tolerance);
+    SimTK::RungeKuttaMersonIntegrator integrator(run_.system.getTree().getSystem());
+    integrator.setAccuracy(run_.simulation.relative_tolerance);
     if (run_.system.getTree().hasConstraints()) {
       constexpr double kOfLength = 1e-10;  // loops stay closed to 1e-9
-      integrator->setConstraintTolerance(kOfLength);
+      integrator.setConstraintTolerance(kOfLength);
     }
-    integrator->setFinalTime(end);
-    integrator->setReturnEveryInternalStep(true);  // so that the limits can be checked
+    integrator.setFinalTime(end);
+    integrator.setReturnEveryInternalStep(true);  // so that the limits can be checked
     state_.setTime(begin);
-    integrator->initialize(state_);
+    integrator.initialize(state_);
     while (failure_.empty() && next_ < run_.times.size() && run_.times[next_] < end) {
-      if (stepTo(*integrator, run_.times[next_])) {
-        record(integrator->getState());
+      if (stepTo(integrator, run_.times[next_])) {
+        record(integrator.getState());
       }
     }
-    if (failure_.empty() && stepTo(*integrator, end)) {
-      state_ = integrator->getAdvancedState();
+    if (failure_.empty() && stepTo(integrator, end)) {
+      state_ = integrator.getAdvancedState();
     }
-    steps_before_ += integrator->getNumStepsAttempted();
+    steps_before_ += integrator.getNumStepsAttempted();
   }
 
   /// False if a limit was reached before.

@@ -34,8 +34,7 @@ SampleStatus SimbodyEngine::simulate(const Eigen::Ref<const Eigen::VectorXd>& pa
 std::string SimbodyEngine::run(const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                Eigen::Ref<Eigen::VectorXd> response, StepSequence& sequence) {
   const SimulationSpec& simulation = context_.model.simulation;
-  // whose steps know no constraints; Simbody's own integrators project
-  const bool own = simulation.integrator == Integrator::kDopri5 && !context_.loops;
+  const bool own = !context_.loops;  // whose steps know no constraints: Simbody's project
   context_.numbers.update(parameters);
   LoadedSystem system(context_, !own);
   fillModes(system, response);  // before the integration, which switches the excitation on

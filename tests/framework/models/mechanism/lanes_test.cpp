@@ -377,11 +377,6 @@ TEST(Lanes, AreTheEngineUnlessSomethingForbidsIt) {
   EXPECT_EQ(getEngine(model), "lanes");
   model.simulation.engine = Engine::kSimbody;
   EXPECT_EQ(getEngine(model), "simbody: simulation.engine asks for it");
-  model.simulation.engine = Engine::kAutomatic;
-  model.simulation.integrator = Integrator::kRungeKuttaMerson;
-  EXPECT_EQ(getEngine(model), "simbody: simulation.integrator is one of Simbody's");
-  model.simulation.engine = Engine::kLanes;
-  EXPECT_THROW(getEngine(model), ExperimentError);
 }
 
 #if defined(__AVX512F__)

@@ -511,6 +511,16 @@ TEST(Loops, FailASampleThatReachesNoClosedStart) {
       << reason;
 }
 
+TEST(Loops, ThatSimbodyMovesHaveTheLimitsOfASample) {
+  ModelSpec model = makeFourBar();
+  model.simulation.engine = Engine::kSimbody;
+  model.simulation.max_steps = 5;
+  EXPECT_EQ(getReason(model, VectorXd()).rfind("step limit of 5 reached", 0), 0u);
+  model.simulation.max_steps = 100000;
+  model.simulation.max_wall_time = 1e-9;
+  EXPECT_EQ(getReason(model, VectorXd()).rfind("wall-time limit", 0), 0u);
+}
+
 TEST(Loops, OfRedundantRodsAreOne) {
   ModelSpec model = makeFourBar();
   model.system.constraints.push_back(model.system.constraints[0]);

@@ -44,15 +44,6 @@ TEST(TwoBeam, DefaultToleranceFollowsTheClosedFormWithinTwoHundredThousandths) {
   EXPECT_LT(error, 2e-5 / 2);  // with margin
 }
 
-TEST(TwoBeam, SimbodysIntegratorsAgree) {
-  ModelSpec model = makeTwoBeam();
-  model.simulation.relative_tolerance = 1e-8;
-  for (const Integrator integrator : {Integrator::kRungeKuttaMerson, Integrator::kCpodes}) {
-    model.simulation.integrator = integrator;
-    EXPECT_LT(calcLargestError(model, 3), 2e-5);
-  }
-}
-
 TEST(TwoBeam, AnyThreadCountAndBatchSizeGivesTheSameBits) {
   const MultibodySimulator simulator(makeTwoBeam(), makeTwoBeamTimes());
   const Eigen::MatrixXd parameters = makeTwoBeamPoints(17);

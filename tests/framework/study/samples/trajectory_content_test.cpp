@@ -23,7 +23,7 @@ TEST(TrajectoryContent, WhatDeterminesAResponseChangesIt) {
   for (const char* change : {"constants.m1=3.4", "system.springs[0].rest=0.1", "system.gravity=[0, 0, -9.8]",
                              "simulation.duration=6", "excitation.F.pulses[0].amplitude=6", "initial={}",
                              "initial.equilibrium.at=sample", "initial.equilibrium.parameters.k_y=6",
-                             "outputs.y={speed: y}", "simulation.integrator=cpodes",
+                             "outputs.y={speed: y}", "simulation.engine=simbody",
                              "simulation.relative_tolerance=1e-7", "simulation.absolute_tolerance=1e-8",
                              "simulation.max_steps=50000", "parameters.k_y.bounds=[5, 16]"}) {
     EXPECT_NE(write({change}), reference) << change;

@@ -50,11 +50,13 @@ TEST(ModelGroups, MapsTransformsAndFeatureTimesShareAGroupModelsDoNot) {
   EXPECT_TRUE(std::is_sorted(groups[0].times.begin(), groups[0].times.end()));
 }
 
-TEST(ModelGroups, SimbodysIntegratorsDoNotShareTimes) {
-  EXPECT_EQ(groupByModel(expand("duffing/cart.yaml",
-                                {"simulation.integrator=cpodes", "features[0].samples.interval=0.02,0.05"}))
-                .size(),
-            2u);
+TEST(ModelGroups, OfLoopsMovedBySimbodyDoNotShareTimes) {
+  const std::vector<std::string> in_lanes{"features[0].samples.count=50",
+                                          "features[0].samples.interval=0.01,0.02"};
+  std::vector<std::string> by_simbody = in_lanes;
+  by_simbody.push_back("simulation.engine=simbody");
+  EXPECT_EQ(groupByModel(expand("mechanisms/slider_crank.yaml", in_lanes)).size(), 1u);
+  EXPECT_EQ(groupByModel(expand("mechanisms/slider_crank.yaml", by_simbody)).size(), 2u);
 }
 
 TEST(ModelGroups, TheLongestWallTimeLimitHoldsForAll) {
