@@ -11,9 +11,11 @@ namespace twinmap {
 namespace {
 
 /// The file of the experiment that is inferred by without a map: the path itself, or that of a run with
-/// `inverse_map: none`; empty for a run with a map.
+/// `inverse_map: none`; empty for a run with a map. A file that is not a trained one is taken for an
+/// experiment, whose reader says what it is instead.
 std::filesystem::path findExperiment(const std::filesystem::path& path) {
-  if (path.extension() == ".yaml" || path.extension() == ".yml") {
+  const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
+  if (is_yaml || (std::filesystem::is_regular_file(path) && path.extension() != ".h5")) {
     return path;
   }
   const std::filesystem::path resolved = path / "resolved.yaml";

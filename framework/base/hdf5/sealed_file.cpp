@@ -35,8 +35,8 @@ std::string readSealedFile(const std::filesystem::path& path) {
   std::string bytes = readBytes(path);
   if (bytes.size() < kSealBytes || bytes.compare(0, std::string(kTitle).size(), kTitle) != 0) {
     throw std::runtime_error(path.string() +
-                             ": does not begin with a checksum: it is damaged, or was not written by this "
-                             "version of twinmap");
+                             ": does not begin with a checksum: it is not a trained estimator (maps.h5), is "
+                             "damaged, or was not written by this version of twinmap");
   }
   if (bytes.compare(0, kSealBytes, makeSeal(bytes)) != 0) {
     throw std::runtime_error(fmt::format(

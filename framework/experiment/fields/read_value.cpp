@@ -38,6 +38,18 @@ void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& e
   }
 }
 
+void requireLength(const YamlNode& node, std::size_t count) {
+  const bool is_list = node.kind == YamlNode::Kind::kSequence;
+  if (is_list && node.items.size() == count) {
+    return;
+  }
+  throw ExperimentError(
+      node.where, describeValue(node),
+      "must be a list of " + std::to_string(count) + " values" +
+          (is_list ? ", not of " + std::to_string(node.items.size()) : "") +
+          (is_list && node.items.size() > count ? "; decimals are written with a point, as 0.1" : ""));
+}
+
 void requireIdentifier(const Name& name) {
   const auto is_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   const bool valid = !name.text.empty() && std::isdigit(static_cast<unsigned char>(name.text[0])) == 0 &&
@@ -227,20 +239,12 @@ const YamlNode* FieldReader::take(const char* key) {
   return node_->find(key);
 }
 
-const YamlNode& FieldReader::takeRequired(const char* key, const char* what) {
+const YamlNode* FieldReader::takeRequired(const char* key, const char* what) {
   const YamlNode* node = take(key);
   if (node == nullptr) {
-    for (const YamlEntry& entry : node_->entries) {
-      const std::string suggestion = suggestName(entry.key, {key});
-      if (!suggestion.empty() && std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
-        throw ExperimentError(entry.key_where, entry.key, "is not a key here" + suggestion);
-      }
-    }
-    throw ExperimentError(
-        node_->where, "",
-        "needs the key '" + std::string(key) + "'" + (*what == '\0' ? "" : " (" + std::string(what) + ")"));
+    missing_.emplace_back(key, what);
   }
-  return *node;
+  return node;
 }
 
 void FieldReader::requireOne(int given, const char* text, std::initializer_list<const char*> keys) {
@@ -255,6 +259,15 @@ void FieldReader::rule(bool holds, const char* text) {
   }
 }
 
+void FieldReader::refuse(const YamlEntry& unknown) const {
+  std::string suggestion = suggestName(unknown.key, known_);
+  if (suggestion.empty() && missing_.size() == 1) {
+    suggestion = "; did you mean '" + missing_.front().first + "', which is missing?";
+  }
+  throw ExperimentError(unknown.key_where, unknown.key,
+                        "is not a key here" + suggestion + " (known: " + listNames(known_) + ")");
+}
+
 void FieldReader::finish() const {
   if (is_value_) {
     return;
@@ -262,10 +275,13 @@ void FieldReader::finish() const {
   requireKind(*node_, YamlNode::Kind::kMap, "a map");
   for (const YamlEntry& entry : node_->entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) == known_.end()) {
-      throw ExperimentError(
-          entry.key_where, entry.key,
-          "is not a key here" + suggestName(entry.key, known_) + " (known: " + listNames(known_) + ")");
+      refuse(entry);
     }
+  }
+  if (!missing_.empty()) {
+    const auto& [key, what] = missing_.front();
+    throw ExperimentError(node_->where, "",
+                          "needs the key '" + key + "'" + (what.empty() ? "" : " (" + what + ")"));
   }
   if (!broken_rule_.empty()) {
     throw ExperimentError(node_->where, "", broken_rule_);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/base/text/nearest_name.hpp"
@@ -47,6 +48,9 @@ void readValue(const YamlNode& node, FreeValues& value);
 /// Throws unless `node` is of the kind; the message says what was expected.
 void requireKind(const YamlNode& node, YamlNode::Kind kind, const std::string& expected);
 
+/// Throws unless `node` is a list of so many values.
+void requireLength(const YamlNode& node, std::size_t count);
+
 /// Throws unless `key` is an identifier: a letter or '_', then letters, digits or '_'.
 void requireIdentifier(const Name& name);
 
@@ -74,13 +78,14 @@ class FieldReader {
   void scalarIsValueOf(const char* key);
   void location(SourceLocation& where) const { where = node_->where; }
 
-  /// Throws for a key that no field asked for, with the nearest known one; then for the first broken rule,
-  /// which a misspelt key may have caused.
+  /// Throws for a key that no field asked for, with the nearest known one, or the one that is missing; then
+  /// for a missing key, then for the first broken rule: a misspelt key may have caused both.
   void finish() const;
 
  private:
   const YamlNode* take(const char* key);
-  const YamlNode& takeRequired(const char* key, const char* what);
+  /// Null, which finish() tells, if the key is missing.
+  const YamlNode* takeRequired(const char* key, const char* what);
   template <class Choice>
   int readChoice(Choice& choice);
   void requireOne(int given, const char* text, std::initializer_list<const char*> keys);
@@ -89,7 +94,10 @@ class FieldReader {
   const YamlNode* node_;
   YamlNode written_out_;   ///< the map that a scalar is short for
   bool is_value_ = false;  ///< not a map
+  [[noreturn]] void refuse(const YamlEntry& unknown) const;
+
   std::vector<std::string> known_;
+  std::vector<std::pair<std::string, std::string>> missing_;  ///< required keys, and what they are
   std::string broken_rule_;
 };
 
@@ -154,10 +162,7 @@ void readValue(const YamlNode& node, std::vector<T>& values, const ListRule& rul
 
 template <class T, std::size_t N>
 void readValue(const YamlNode& node, std::array<T, N>& values) {
-  if (node.kind != YamlNode::Kind::kSequence || node.items.size() != N) {
-    throw ExperimentError(node.where, describeValue(node),
-                          "must be a list of " + std::to_string(N) + " values");
-  }
+  requireLength(node, N);
   for (std::size_t i = 0; i < N; ++i) {
     readValue(node.items[i], values[i]);
   }
@@ -198,7 +203,9 @@ void readByRule(const YamlNode& node, T& value, const Rule& rule, const Others&.
 
 template <class T, class... Rule>
 void FieldReader::required(const char* key, T& value, const char* what, const Rule&... rule) {
-  readByRule(takeRequired(key, what), value, rule...);
+  if (const YamlNode* node = takeRequired(key, what)) {
+    readByRule(*node, value, rule...);
+  }
 }
 
 template <class T, class... Rule>
@@ -210,10 +217,13 @@ void FieldReader::optional(const char* key, T& value, const char*, const Rule&..
 
 template <class T>
 void FieldReader::requiredMap(const char* key, std::vector<T>& values, const char* what) {
-  const YamlNode& node = takeRequired(key, what);
-  readMap(node, values);
+  const YamlNode* node = takeRequired(key, what);
+  if (node == nullptr) {
+    return;
+  }
+  readMap(*node, values);
   if (values.empty()) {
-    throw ExperimentError(node.where, "{}", "must name at least one; " + std::string(what));
+    throw ExperimentError(node->where, "{}", "must name at least one; " + std::string(what));
   }
 }
 

@@ -52,6 +52,22 @@ std::string describe(const YAML::Exception& error, const std::string& text) {
   return layout.empty() ? problem : layout;
 }
 
+/// Throws where the comma between the last value of a list or map in brackets and what comes next is one
+/// of the value's own parentheses, as of max(F, 0).
+void requireUncut(const YamlNode& parent, const YamlNode& next) {
+  const bool is_list = parent.kind == YamlNode::Kind::kSequence;
+  if (is_list ? parent.items.empty() : parent.entries.empty()) {
+    return;
+  }
+  const YamlNode& last = is_list ? parent.items.back() : parent.entries.back().value;
+  const std::string& text = last.scalar;
+  if (!last.quoted && std::count(text.begin(), text.end(), '(') > std::count(text.begin(), text.end(), ')')) {
+    throw ExperimentError(last.where, text,
+                          "ends at a comma: in braces and brackets a text that holds one needs quotes, \"" +
+                              text + ", " + (next.scalar.empty() ? "..." : next.scalar) + "\"");
+  }
+}
+
 /// Builds the tree from yaml-cpp's events. Containers under construction are on a stack; a map also holds
 /// the key whose value comes next.
 class TreeBuilder : public YAML::EventHandler {
@@ -91,13 +107,13 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                       YAML::EmitterStyle::value) override {
-    open(makeSequence(), mark, tag, anchor);
+                       YAML::EmitterStyle::value style) override {
+    open(makeSequence(), mark, tag, anchor, style);
   }
   void OnSequenceEnd() override { close(); }
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
-                  YAML::EmitterStyle::value) override {
-    open(makeMap(), mark, tag, anchor);
+                  YAML::EmitterStyle::value style) override {
+    open(makeMap(), mark, tag, anchor, style);
   }
   void OnMapEnd() override { close(); }
 
@@ -105,6 +121,7 @@ class TreeBuilder : public YAML::EventHandler {
   struct Open {
     YamlNode node;
     YAML::anchor_t anchor;
+    bool in_brackets;  ///< where a comma ends a text
     std::size_t values_before;
     std::unordered_set<std::string> keys;
     bool has_key = false;
@@ -123,7 +140,8 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  void open(YamlNode node, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
+  void open(YamlNode node, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+            YAML::EmitterStyle::value style) {
     if (tag != "?" && !tag.empty()) {
       throw ExperimentError(locate(file_, mark), tag, "is a tag; twinmap reads plain YAML without tags");
     }
@@ -133,7 +151,8 @@ class TreeBuilder : public YAML::EventHandler {
     if (stack_.size() == kMaxLevels) {
       throw ExperimentError(locate(file_, mark), "", "is nested more than 20 levels deep");
     }
-    stack_.push_back({std::move(node), anchor, values_before, {}, false, "", {}});
+    const bool in_brackets = style == YAML::EmitterStyle::Flow;
+    stack_.push_back({std::move(node), anchor, in_brackets, values_before, {}, false, "", {}});
   }
 
   void close() {
@@ -151,6 +170,9 @@ class TreeBuilder : public YAML::EventHandler {
       return;
     }
     Open& parent = stack_.back();
+    if (parent.in_brackets && !parent.has_key) {
+      requireUncut(parent.node, node);
+    }
     if (parent.node.kind == YamlNode::Kind::kSequence) {
       parent.node.items.push_back(std::move(node));
     } else if (!parent.has_key) {
@@ -222,6 +244,28 @@ std::string readStart(std::istream& stream, std::size_t most) {
   return text;
 }
 
+/// What a file that is not YAML is, by its first bytes, and what to do; empty if they do not tell.
+std::string describeOtherFormat(const std::string& text) {
+  const auto begins = [&text](const std::string& start) { return text.compare(0, start.size(), start) == 0; };
+  if (begins("PK\x03\x04")) {
+    return "is a ZIP archive, as FMUs are: name it in an experiment file (model.fmu.file)";
+  }
+  if (begins("\x89HDF")) {
+    return "is an HDF5 file, not an experiment file in YAML";
+  }
+  if (const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+      first == std::string::npos || text[first] != '<') {
+    return "";
+  }
+  for (const auto& [tag, kind] : {std::pair("<robot", "URDF"), {"<mujoco", "MJCF"}, {"<sdf", "SDF"}}) {
+    if (text.find(tag) != std::string::npos) {
+      return std::string("is a ") + kind +
+             " file, which twinmap does not read: write its links as system.bodies of an experiment file";
+    }
+  }
+  return "is an XML file, not an experiment file in YAML";
+}
+
 }  // namespace
 
 YamlNode parseYaml(const std::string& text, const std::string& file) {
@@ -263,9 +307,17 @@ YamlNode loadYaml(const std::string& path) {
   if (text.size() > kLargestFile) {
     throw ExperimentError(where, "", "is larger than 16 MiB, too large for an experiment file");
   }
+  if (const std::string other = describeOtherFormat(text); !other.empty()) {
+    throw ExperimentError(where, "", other);
+  }
   YamlNode root = parseYaml(text, path);
   if (root.kind == YamlNode::Kind::kNull) {
     throw ExperimentError(root.where, "", "is empty: an experiment begins with its name, as 'name: cart'");
+  }
+  if (root.kind != YamlNode::Kind::kMap) {
+    throw ExperimentError(root.where, describeValue(root),
+                          "is not an experiment, which begins with its name, as 'name: cart'; a recording is "
+                          "given after its experiment");
   }
   return root;
 }

@@ -412,6 +412,20 @@ class Direct(FolderTestCase):
             self.assertEqual(result.returncode, 2)
             self.assertIn("measured.csv: is a recording; first give", result.stderr)
 
+    def test_files_of_other_programs_are_named(self):
+        for text, words in (
+            ('<?xml version="1.0"?>\n<robot name="cart"/>\n', "is a URDF file, which twinmap does not read"),
+            ("<mujoco/>", "is a MJCF file"),
+            ("PK\x03\x04", "is a ZIP archive, as FMUs are"),
+            ("t,x\n0,1\n", "is not an experiment, which begins with its name"),
+        ):
+            path = self.folder / "model.other"
+            path.write_text(text)
+            for command in (("infer", path, self.measured), ("diagnose", path, self.measured), ("check", path)):
+                result = call(*command)
+                self.assertEqual(result.returncode, 2, command)
+                self.assertIn(words, result.stderr.splitlines()[0])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -136,6 +136,21 @@ INSTANTIATE_TEST_SUITE_P(
                 "system.springs=[{coordinate: y, stifness: 1}]",
                 {"system.springs[0].stifness", "did you mean 'stiffness'?"}},
         Mistake{
+            "SymbolForRequiredKey",
+            "system.springs=[{coordinate: y, k: 1}]",
+            {"system.springs[0].k:", "'k' is not a key here; did you mean 'stiffness', which is missing?"}},
+        Mistake{"SymbolForAnotherRequiredKey",
+                "outputs.y={q: y}",
+                {"outputs.y.q:", "'q' is not a key here", "known: coordinate"}},
+        Mistake{"SymbolBesideAMissingDamping",
+                "system.dampers=[{viscosity: 3, coordinate: y}]",
+                {"system.dampers[0].viscosity:", "did you mean 'damping', which is missing?"}},
+        Mistake{"DecimalComma",
+                "parameters.k_y.bounds=[0,1, 5]",
+                {"parameters.k_y.bounds:",
+                 "'[0, 1, 5]' must be a list of 2 values, not of 3; decimals are "
+                 "written with a point, as 0.1"}},
+        Mistake{
             "TextForNumber", "noise.scale=loud", {"noise.scale", "'loud'", "must be a number, 0 or above"}},
         Mistake{"QuotedNumber", "noise.scale=\"2\"", {"noise.scale", "must be a number"}},
         Mistake{"NegativeNumber", "noise.stddev.y=-1", {"noise.stddev.y", "'-1'", "0 or above"}},

@@ -67,6 +67,19 @@ TEST(YamlNode, AsksForQuotesWhereABracketOrAColonCutsAText) {
   }
 }
 
+TEST(YamlNode, AsksForQuotesWhereACommaCutsATerm) {
+  EXPECT_EQ(
+      getYamlError("a: {coordinate: x, force: max(F, 0)}\n"),
+      "f.yaml:1:27: 'max(F' ends at a comma: in braces and brackets a text that holds one needs quotes, "
+      "\"max(F, 0)\"");
+  EXPECT_NE(getYamlError("a: [1, min(u, -v), 2]\n").find("\"min(u, -v)\""), std::string::npos);
+  EXPECT_NE(getYamlError("a: {x: max(a, min(b, c)), y: 2}\n").find("\"max(a, min(b\""), std::string::npos);
+  for (const char* text : {"a: {x: 'max(a, b)', y: 2}\n", "a:\n  x: max(a, b)\n  y: (\n  z: 1\n",
+                           "a: {x: f(a), y: \"(\", z: 1}\n", "a: [f(a), (b)]\n"}) {
+    EXPECT_EQ(getYamlError(text), "") << text;
+  }
+}
+
 TEST(YamlNode, AnEmptyFileHasAPlaceToo) {
   EXPECT_EQ(parseYaml("", "f.yaml").where.file, "f.yaml");
   EXPECT_EQ(getYamlError(std::string("a: 1\nb: \0", 9)).rfind("f.yaml:2:1: has a NUL byte", 0), 0u);
