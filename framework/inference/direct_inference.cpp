@@ -4,6 +4,7 @@
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
+#include "framework/experiment/check/unused_parameters.hpp"
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
@@ -68,7 +69,8 @@ DirectInference::DirectInference(const MeasurementReader& reader, int draws, Sim
       simulator_(reader.getExperiment(), reader.getLayout(), makeShared(reader, model)),
       options_(makePosteriorOptions(reader.getExperiment(), draws)),
       quantities_(makeDerivedQuantities(reader.getExperiment())),
-      prior_(findStatedPrior(reader.getExperiment().model)) {
+      prior_(findStatedPrior(reader.getExperiment().model)),
+      unused_(listUnused(reader.getExperiment(), "parameters")) {
   options_.profiles = profiles;
   simulator_.requireNoise();
 }
@@ -179,6 +181,7 @@ InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, co
   inferred.ridges = simulator.findRidges(*inferred.posterior, known);
   inferred.quantities = quantities_;
   inferred.prior = prior_;
+  inferred.unused = unused_;
   return inferred;
 }
 

@@ -58,6 +58,7 @@ class DirectInference final : public MeasurementInference {
   SimulatorPosteriorOptions options_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
   std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
+  std::vector<std::string> unused_;                      // parameters
   std::unique_ptr<LikeRecording> followed_;              // of the last table that was followed
 };
 

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "framework/data/features/experiment_features.hpp"
+#include "framework/experiment/check/unused_parameters.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/store/reduction_group.hpp"
@@ -47,7 +48,8 @@ Inferrer::Inferrer(TrainedFile loaded)
       map_(std::move(loaded.model.map)),
       trust_(std::move(loaded.model.trust)),
       quantities_(makeDerivedQuantities(reader_.getExperiment())),
-      prior_(findStatedPrior(reader_.getExperiment().model)) {}
+      prior_(findStatedPrior(reader_.getExperiment().model)),
+      unused_(listUnused(reader_.getExperiment(), "parameters")) {}
 
 Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap().makeWorkspace()) {
   if (inferrer.getTrustModel()) {
@@ -60,6 +62,7 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
   InferredMeasurement inferred;
   inferred.quantities = quantities_;
   inferred.prior = prior_;
+  inferred.unused = unused_;
   inferred.by_estimator = map_->infer(features, known, *workspace.map);
   inferred.estimator_is_calibrated = isCalibrated(*map_, trust_ ? &*trust_ : nullptr);
   inferred.estimator_coverage_is_short = trust_ && trust_->coverage.isShort();

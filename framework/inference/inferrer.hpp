@@ -57,7 +57,8 @@ struct InferredMeasurement {
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
   std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
   std::shared_ptr<const StatedPrior> prior{};             ///< of the experiment; null where all is uniform
-  std::vector<Ridge> ridges{};  ///< of the simulator's posterior, where that alone was sampled
+  std::vector<std::string> unused{};  ///< parameters that nothing in the experiment depends on
+  std::vector<Ridge> ridges{};        ///< of the simulator's posterior, where that alone was sampled
   std::optional<SegmentReport> segments{};
 };
 
@@ -102,6 +103,7 @@ class Inferrer {
   std::optional<TrustModel> trust_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
   std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
+  std::vector<std::string> unused_;                      // parameters
 };
 
 }  // namespace twinmap

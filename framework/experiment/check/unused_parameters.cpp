@@ -3,6 +3,8 @@
 #include <cctype>
 #include <set>
 
+#include "framework/experiment/fields/write_value.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -59,6 +61,16 @@ std::vector<std::string> listUnused(const YamlNode& experiment, const std::strin
     }
   }
   return unused;
+}
+
+std::vector<std::string> listUnused(ExperimentSpec experiment, const std::string& section) {
+  for (SignalSpec& signal : experiment.model.excitation) {
+    for (TableSpec& table : signal.tables) {  // numbers alone, as many as a recording has
+      table.times.clear();
+      table.values.clear();
+    }
+  }
+  return listUnused(writeValue(experiment), section);
 }
 
 std::vector<std::string> listUnusedParameters(const YamlNode& experiment) {

@@ -9,7 +9,6 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
-#include "framework/experiment/fields/write_value.hpp"
 
 namespace twinmap {
 namespace {
@@ -75,25 +74,20 @@ std::string makeUnique(std::string name, const ModelSpec& model) {
   return name;
 }
 
-/// As YAML, without the numbers of tables.
-YamlNode writeNames(ExperimentSpec experiment) {
-  for (SignalSpec& signal : experiment.model.excitation) {
-    for (TableSpec& table : signal.tables) {
-      table.times.clear();
-      table.values.clear();
-    }
+void requireUsed(const ExperimentSpec& experiment) {
+  if (const std::vector<std::string> unused = listUnused(experiment, "parameters"); !unused.empty()) {
+    throw ExperimentError("nothing uses parameter '" + unused.front() +
+                          "': name it in an expression of the system, or take it out");
   }
-  return writeValue(experiment);
 }
 
 /// Takes out the nuisance parameters that nothing uses any more.
 void dropUnused(ExperimentSpec& experiment) {
-  const YamlNode tree = writeNames(experiment);
-  if (const std::vector<std::string> unused = listUnused(tree, "parameters"); !unused.empty()) {
+  if (const std::vector<std::string> unused = listUnused(experiment, "parameters"); !unused.empty()) {
     throw ExperimentError("parameter '" + unused.front() +
                           "' is of the initial state alone, which is each segment's own; make it a nuisance");
   }
-  for (const std::string& name : listUnused(tree, "nuisance")) {
+  for (const std::string& name : listUnused(experiment, "nuisance")) {
     std::vector<ParameterSpec>& nuisance = experiment.model.nuisance;
     nuisance.erase(std::remove_if(nuisance.begin(), nuisance.end(),
                                   [&](const ParameterSpec& one) { return one.name.text == name; }),
@@ -135,6 +129,7 @@ ExperimentSpec makeRecordingExperiment(ExperimentSpec experiment, const SegmentG
 
 ExperimentSpec makeSegmentExperiment(ExperimentSpec experiment, const SegmentGrid& grid,
                                      const std::vector<StartState>& states, const StateGuess& guess) {
+  requireUsed(experiment);
   ModelSpec& model = experiment.model;
   std::vector<Expression> names;
   for (std::size_t i = 0; i < states.size(); ++i) {

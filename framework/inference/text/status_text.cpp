@@ -36,9 +36,11 @@ std::string listBeyondBounds(const InferredMeasurement& inferred, const Estimate
   return names.empty() ? "a nuisance parameter" : listNames(names);
 }
 
-/// Names and, of the first, the reduction.
-std::string explainUninformative(const Estimate& estimate, const std::vector<ParameterSpec>& parameters) {
+/// One explanation a parameter that is hardly better known than before.
+std::string explainUninformative(const InferredMeasurement& inferred, const Estimate& estimate,
+                                 const std::vector<ParameterSpec>& parameters) {
   constexpr double kPercent = 100.0;
+  const std::vector<std::string>& unused = inferred.unused;
   std::string text;
   for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
     const Bounds& bounds = parameters[p].bounds;
@@ -46,8 +48,13 @@ std::string explainUninformative(const Estimate& estimate, const std::vector<Par
     const double before = estimate.prior_stddev.size() > 0 ? estimate.prior_stddev[i]
                                                            : kUniformStddev * (bounds.upper - bounds.lower);
     const double left = estimate.stddev[i] / before;
-    if (left > kUninformativeShare) {
-      text += explainNotice(Notice::kUninformative, parameters[p].name.text,
+    const std::string& name = parameters[p].name.text;
+    if (std::find(unused.begin(), unused.end(), name) != unused.end()) {
+      text +=
+          fmt::format("  {}: nothing uses {}\n    Name it in an expression of the system, or take it out.\n",
+                      getNotice(Notice::kUninformative).name, name);
+    } else if (left > kUninformativeShare) {
+      text += explainNotice(Notice::kUninformative, name,
                             fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left)));
     }
   }
@@ -208,7 +215,7 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
     return explainNotice(Notice::kAtBounds, listBeyondBounds(inferred, estimate, parameters));
   }
   if (is(Notice::kUninformative)) {
-    return explainUninformative(estimate, parameters);
+    return explainUninformative(inferred, estimate, parameters);
   }
   if (is(Notice::kOutliers)) {
     return explainOutliers(inferred.posterior->fit->outliers);
@@ -254,10 +261,10 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::st
   if (inferred.trust) {
     const Trust& trust = *inferred.trust;
     constexpr double kLarge = 1e5;
-    return fmt::format("{} ({}, chi-square {} of {} residuals)", statuses, describePValue(trust),
+    return fmt::format("{} (chi-square {} of {} residuals, {})", statuses,
                        trust.chi_square < kLarge ? fmt::format("{:.1f}", trust.chi_square)
                                                  : fmt::format("{:.2g}", trust.chi_square),
-                       trust.residuals);
+                       trust.residuals, describePValue(trust));
   }
   if (!inferred.posterior || !inferred.posterior->fit) {
     return statuses + (statuses.empty() ? "" : "; ") + "not judged (the run has no trust model)";
@@ -265,11 +272,11 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::st
   const SimulatorFit& fit = *inferred.posterior->fit;
   constexpr double kSmall = 1e-4;  // no reader needs to know more, and small ones underflow
   const double p = fit.test.calcPValue();
-  return fit.isSimulated() ? fmt::format("{} ({}{}, chi-square {:.4g} of {:.4g} degrees of freedom)",
-                                         statuses, isOtherThanStated(inferred, fit) ? "with that " : "",
-                                         p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p),
-                                         fit.chi_square, fit.degrees)
-                           : statuses;
+  return fit.isSimulated()
+             ? fmt::format("{} ({}chi-square {:.4g} of {:.4g} degrees of freedom, {})", statuses,
+                           isOtherThanStated(inferred, fit) ? "with that " : "", fit.chi_square, fit.degrees,
+                           p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p))
+             : statuses;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@ import json
 import unittest
 
 import numpy as np
+import yaml
 
 from support import EXPERIMENTS, MIRROR, FolderTestCase, call, read_csv, write_csv
 
@@ -241,8 +242,8 @@ class Direct(FolderTestCase):
     def test_table_and_csv_say_the_same(self):
         found = json.loads(self.infer(CART, self.measured, "--json"))
         table = self.infer(CART, self.measured)
-        self.assertIn("measured.csv: ok (p = ", table)
-        self.assertIn("best fit found by", table)
+        self.assertIn("measured.csv: ok (chi-square ", table)
+        self.assertIn("\n  sampled on the simulator\n", table)  # nothing limits it
         path = self.folder / "found.csv"
         path.write_text(self.infer(CART, self.measured, "--csv"))
         for row in read_csv(path):
@@ -411,6 +412,18 @@ class Direct(FolderTestCase):
             result = call("infer", self.measured, self.measured, *options)
             self.assertEqual(result.returncode, 2)
             self.assertIn("measured.csv: is a recording; first give", result.stderr)
+
+    def test_a_parameter_that_nothing_uses_is_named(self):
+        tree = yaml.safe_load(CART.read_text())
+        tree["parameters"]["mu"] = {"bounds": [0, 1]}
+        path = self.folder / "spare.yaml"
+        path.write_text(yaml.safe_dump(tree, sort_keys=False))
+        table = self.infer(path, self.measured)
+        self.assertRegex(table, r": uninformative \(chi-square [\d.]+ of 97 degrees of freedom, p = [\d.]+\)\n")
+        self.assertIn("\n  uninformative: nothing uses mu\n    Name it in an expression", table)
+        result = call("infer", path, self.measured, "--segments", "1")
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("nothing uses parameter 'mu'", result.stderr)
 
     def test_files_of_other_programs_are_named(self):
         for text, words in (

@@ -80,7 +80,7 @@ class Replay(ReplayCase):
 
     def test_prints_the_status_and_the_fit(self):
         folder = self.replay("print", self.measurement)
-        self.assertTrue(self.stdout.startswith(f"{self.measurement}: ok (p = "), self.stdout)
+        self.assertTrue(self.stdout.startswith(f"{self.measurement}: ok (chi-square "), self.stdout)
         self.assertRegex(self.stdout, r"\| y +\|")
         self.assertIn(f"Report: {folder}/report.html", self.stderr)
 
@@ -177,7 +177,7 @@ class Replay(ReplayCase):
             table = data["tables"][figure["table"]]
             for name in ("measured", "nominal", "updated", "lower", "upper"):
                 np.testing.assert_allclose(table[name], columns[name], rtol=1e-6)
-        self.assertIn(f"{self.measurement}: ok (p = ", page)
+        self.assertIn(f"{self.measurement}: ok (chi-square ", page)
         for name in TRUE:
             self.assertIn(f">{name}</td>", page)
         markup = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)

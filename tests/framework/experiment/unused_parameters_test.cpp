@@ -30,6 +30,14 @@ TEST(UnusedParameters, AreUsedByDelaysOfTheMeasurementAndTheInitialState) {
                   .empty());
 }
 
+TEST(UnusedParameters, OfATypedExperimentAreThoseOfItsFile) {
+  YamlNode tree = loadYaml(TWINMAP_SOURCE_DIR "/experiments/duffing/cart.yaml");
+  EXPECT_TRUE(listUnused(readExperiment(tree), "parameters").empty());
+  tree.find("parameters")->entries[1].key = "c";  // the damper's d is a constant now
+  tree.entries.push_back({"constants", {}, parseYaml("d: {value: 1, unit: N s/m}", "c.yaml")});
+  EXPECT_EQ(listUnused(readExperiment(tree), "parameters"), std::vector<std::string>{"c"});
+}
+
 TEST(UnusedParameters, OfAModelFromElsewhereAreItsOwn) {
   EXPECT_TRUE(list("parameters: {k: {bounds: [0, 1]}}\nfmu: {file: a.fmu}\n").empty());
 }

@@ -153,7 +153,7 @@ class Inferring(TwoBeams):
 
     def test_shows_itself(self):
         answer = self.map.infer(self.measurement.to_frame())
-        self.assertRegex(repr(answer), r"^measurement: ok \(p = ")
+        self.assertRegex(repr(answer), r"^measurement: ok \(chi-square ")
         self.assertIn("<table", answer._repr_html_())
         self.assertIn("k_theta", repr(self.map))
 
