@@ -1,6 +1,7 @@
 #include "framework/cli/progress_line.hpp"
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -8,22 +9,52 @@
 #include <iostream>
 #include <string_view>
 
+#include "framework/base/log/search_stage.hpp"
+
 namespace twinmap::cli {
 bool isTerminal() {
   const char* kind = std::getenv("TERM");
   return ::isatty(STDERR_FILENO) == 1 && kind != nullptr && std::string_view(kind) != "dumb";
 }
 
-std::string describeDuration(double seconds) {
-  const auto whole = static_cast<long>(std::ceil(seconds));
-  constexpr long kMinute = 60, kHour = 3600;
-  const std::string minutes = fmt::format("{}:{:02}", whole / kMinute, whole % kMinute);
-  return whole < kHour
-             ? minutes
-             : fmt::format("{}:{:02}:{:02}", whole / kHour, whole % kHour / kMinute, whole % kMinute);
+std::size_t getTerminalWidth() {
+  constexpr std::size_t kUnknown = 80;
+  winsize size{};
+  if (!isTerminal()) {
+    return 0;
+  }
+  return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUnknown;
 }
 
-ProgressLine::ProgressLine() : terminal_(isTerminal()) {}
+void writeToStderr(const std::string& text) {
+  std::cerr << text << std::flush;
+}
+
+ProgressLine::ProgressLine(bool is_quiet)
+    : terminal_(isTerminal()), line_(getTerminalWidth(), &writeToStderr) {
+  if (!is_quiet) {
+    thread_ = std::thread([this] { watch(); });
+  }
+}
+
+ProgressLine::~ProgressLine() {
+  if (thread_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      over_ = true;
+    }
+    woken_.notify_one();
+    thread_.join();
+  }
+}
+
+void ProgressLine::watch() {
+  constexpr std::chrono::milliseconds kInterval(100);
+  std::unique_lock lock(mutex_);
+  while (!woken_.wait_for(lock, kInterval, [this] { return over_; })) {
+    line_.tick(std::chrono::duration<double>(Clock::now() - begun_).count());
+  }
+}
 
 void ProgressLine::startStage(const Progress& progress) {
   first_ = progress;
@@ -60,6 +91,7 @@ std::string ProgressLine::describe(const Progress& progress) const {
 }
 
 void ProgressLine::update(const Progress& progress) {
+  const std::lock_guard lock(mutex_);
   if (progress.stage != first_.stage) {
     startStage(progress);
   }
@@ -67,6 +99,7 @@ void ProgressLine::update(const Progress& progress) {
     return;
   }
   shown_ = Clock::now();
+  line_.note(std::chrono::duration<double>(shown_ - begun_).count());
   if (terminal_) {
     std::cerr << kClearLine << makeBar(progress) << describe(progress) << std::flush;
   } else {
@@ -74,7 +107,8 @@ void ProgressLine::update(const Progress& progress) {
   }
 }
 
-void ProgressLine::clear() const {
+void ProgressLine::clear() {
+  const std::lock_guard lock(mutex_);
   if (terminal_) {
     std::cerr << kClearLine << std::flush;
   }

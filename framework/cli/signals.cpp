@@ -26,16 +26,30 @@ void handle(int signal) {
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
 }
 
-}  // namespace
+void note(int signal) {
+  if (number.exchange(signal) != 0) {
+    ::_exit(kExitOfSignal + signal);
+  }
+}
 
-StopFlags catchSignals() {
+void install(void (*handler)(int)) {
   for (const int signal : {SIGINT, SIGTERM}) {
     struct sigaction action {};
-    action.sa_handler = handle;
+    action.sa_handler = handler;
     action.sa_flags = SA_RESTART;
     ::sigaction(signal, &action, nullptr);
   }
+}
+
+}  // namespace
+
+StopFlags catchSignals() {
+  install(&handle);
   return {stop, abandon};
+}
+
+void watchInterrupt(bool watched) {
+  install(watched ? &note : SIG_DFL);
 }
 
 int getSignal() {

@@ -14,6 +14,10 @@ struct StopFlags {
 /// ends the process at once, with 128 + the signal's number, as a shell reports it.
 StopFlags catchSignals();
 
+/// Whether SIGINT and SIGTERM only set getSignal() from now on, for a thread that looks at it; the second
+/// ends the process at once. Else they end it, as ever.
+void watchInterrupt(bool watched);
+
 /// The number of the signal that came, or 0.
 int getSignal();
 

@@ -1,35 +1,57 @@
 #include "framework/cli/waiting_line.hpp"
 
+#include <fmt/core.h>
+
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/cli/progress_line.hpp"
+#include "framework/cli/signals.hpp"
 
 namespace twinmap::cli {
+namespace {
 
-WaitingLine::WaitingLine(std::string what) : what_(std::move(what)) {
-  if (isTerminal()) {
-    thread_ = std::thread([this] { renew(); });
+/// Without a return: the threads that search know of no end before theirs.
+[[noreturn]] void endByInterrupt(double seconds) {
+  const SearchState state = getSearchState();
+  const std::string best = describeBest(state);
+  std::cerr << fmt::format("twinmap: interrupted after {}: {}\n", describeDuration(seconds),
+                           describeState(state));
+  if (!best.empty()) {
+    std::cerr << "  best so far, of a search that has not ended: " << best << "\n";
   }
+  std::cerr.flush();
+  std::cout.flush();
+  std::_Exit(128 + getSignal());
+}
+
+}  // namespace
+
+WaitingLine::WaitingLine(std::string what)
+    : stage_(std::in_place, std::move(what)), line_(getTerminalWidth(), &writeToStderr) {
+  watchInterrupt(true);
+  thread_ = std::thread([this] { renew(); });
 }
 
 void WaitingLine::describe(std::string what) {
-  const std::lock_guard lock(mutex_);
-  what_ = std::move(what);
+  stage_.reset();
+  stage_.emplace(std::move(what));
 }
 
 void WaitingLine::renew() {
   using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::seconds kPatience(2);
-  constexpr std::chrono::milliseconds kInterval(500);
+  constexpr std::chrono::milliseconds kInterval(100);
   const Clock::time_point start = Clock::now();
   std::unique_lock lock(mutex_);
-  woken_.wait_for(lock, kPatience, [this] { return over_; });
-  while (!over_) {
+  while (!woken_.wait_for(lock, kInterval, [this] { return over_; })) {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    std::cerr << kClearLine << what_ << ", " << describeDuration(seconds) << std::flush;
-    shown_ = true;
-    woken_.wait_for(lock, kInterval, [this] { return over_; });
+    if (getSignal() != 0) {
+      line_.clear();
+      endByInterrupt(seconds);
+    }
+    line_.tick(seconds);
   }
 }
 
@@ -43,9 +65,13 @@ void WaitingLine::clear() {
   }
   woken_.notify_one();
   thread_.join();
-  if (shown_) {
-    std::cerr << kClearLine << std::flush;
-  }
+  watchInterrupt(false);
+  line_.clear();
+  stage_.reset();
+}
+
+std::string nameWindow(const std::string& file, const std::optional<double>& start) {
+  return start ? fmt::format("{} from {} s", file, toText(*start)) : file;
 }
 
 }  // namespace twinmap::cli

@@ -2,13 +2,17 @@
 
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
+#include "framework/base/log/search_line.hpp"
+#include "framework/base/log/search_stage.hpp"
+
 namespace twinmap::cli {
 
-/// Says on a terminal (stderr) what a command is busy with, and for how long, once it takes longer than two
-/// seconds: a line that is renewed twice a second and removed at the end. Nothing elsewhere, and no thread.
+/// Says on stderr what a command is at (SearchLine), as long as it lives, and ends the process at SIGINT or
+/// SIGTERM with what is known then: how far it is, the best fit and its parameters.
 class WaitingLine {
  public:
   explicit WaitingLine(std::string what);
@@ -24,11 +28,15 @@ class WaitingLine {
  private:
   void renew();
 
+  std::optional<SearchStage> stage_;
+  SearchLine line_;
   std::mutex mutex_;
   std::condition_variable woken_;
-  std::string what_;
-  bool over_ = false, shown_ = false;
+  bool over_ = false;
   std::thread thread_;
 };
+
+/// A window of a file, as its line of progress names it.
+std::string nameWindow(const std::string& file, const std::optional<double>& start);
 
 }  // namespace twinmap::cli

@@ -1,10 +1,13 @@
 #include "framework/diagnosis/diagnosis.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
 #include "framework/base/log/notice.hpp"
+#include "framework/base/log/search_stage.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/term_search.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -65,7 +68,10 @@ class Diagnoser {
     Diagnosis diagnosis;
     diagnosis.level = options_.level;
     diagnosis.shared = experiment.model.parameters.size();
-    diagnosis.before = explain(problem, MatrixXd(u, 0), options_.posterior);
+    {
+      const SearchStage stage("fit the model as it is");
+      diagnosis.before = explain(problem, MatrixXd(u, 0), options_.posterior);
+    }
     const SimulatorPosterior& before = diagnosis.before.posterior;
     shared_ = static_cast<Index>(experiment.model.parameters.size());
     TermSearch search(recordings_, options_, {experiment, before.best, before.chi_square, before.degrees},
@@ -74,6 +80,7 @@ class Diagnoser {
         options_.accepted.empty() ? static_cast<std::size_t>(options_.max_terms) : options_.accepted.size();
     // each step adds a term or two, some drop one: twice as many end a search that would go round
     while (search.getFits().back().terms.size() < most && diagnosis.found < 2 * most) {
+      const SearchStage stage(fmt::format("look for term {}", diagnosis.found + 1));
       diagnosis.steps.push_back(search.takeStep(diagnosis.found));
       if (!diagnosis.steps.back().found) {
         break;
@@ -123,6 +130,7 @@ class Diagnoser {
   /// Takes the last terms back that stand in for something else, then infers with those that are left.
   void finish(const TermSearch& search, Diagnosis& diagnosis) const {
     const std::vector<CurrentFit>& fits = search.getFits();
+    const SearchStage stage("infer with what was found");
     diagnosis.after = diagnosis.before;
     while (diagnosis.found > 0) {
       const CurrentFit& last = fits[diagnosis.found];
@@ -245,6 +253,7 @@ Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& rec
   if (hasUnknownNoise(experiment.noise)) {
     const RecordingsProblem problem(experiment, recordings);
     const MatrixXd none(static_cast<Index>(problem.getUnknown().size()), 0);
+    const SearchStage stage("find the size of the noise");
     sizeNoiseBy(explain(problem, none, options.posterior), experiment, recordings, sized);
   }
   Diagnosis diagnosis = Diagnoser(recordings, options).run(sized);

@@ -1,9 +1,12 @@
 #include "framework/diagnosis/scored_candidates.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -211,6 +214,7 @@ ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const Recorde
   std::vector<ParameterSpec> unknown;
   LinearizedRecordings linear;
   MatrixXd terms;
+  const SearchStage stage(fmt::format("score {} candidates", scored.candidates.size()));
   for (const std::vector<TermCandidate>& part : splitByStates(scored.candidates)) {
     appendDerivatives(experiment, recordings, point, part, unknown, linear, terms);
   }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/diagnosis/held_out.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -50,11 +51,13 @@ double findLastThird(const std::vector<FeatureInfo>& infos) {
 void holdOutEach(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                  const SimulatorPosteriorOptions& options, StructureFit& fit) {
   double squares = 0.0;
+  SearchStage stage("predict each recording by the others", static_cast<int>(recordings.features.size()));
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
     const HeldOutPrediction prediction = predictHeldOut(
         experiment, recordings.select({k}), inferMachine(experiment, recordings.leaveOut(k), options));
     squares += prediction.rms * prediction.rms;
     fit.held_out_p = std::min(fit.held_out_p, prediction.p_value);
+    stage.advance();
   }
   fit.held_out_rms = std::sqrt(squares / static_cast<double>(recordings.features.size()));
 }
@@ -63,6 +66,7 @@ void holdOutEach(const ExperimentSpec& experiment, const RecordedFeatures& recor
 void holdOutEnd(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                 const std::vector<FeatureInfo>& infos, const SimulatorPosteriorOptions& options,
                 StructureFit& fit) {
+  const SearchStage stage("predict the last third by what is before it");
   const double from = findLastThird(infos);
   RecordedFeatures before = recording;
   for (std::size_t i = 0; i < infos.size(); ++i) {

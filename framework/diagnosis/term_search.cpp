@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/diagnosis/second_test.hpp"
 #include "framework/diagnosis/term_exchange.hpp"
@@ -107,8 +108,10 @@ DiagnosisStep TermSearch::takeStep(std::size_t number) {
 
 void TermSearch::rankByFits(const CurrentFit& current, const ScoredCandidates& scored, std::size_t count,
                             std::vector<RankedTerm>& ranked) const {
+  SearchStage stage("fit the best candidates", static_cast<int>(count));
   for (std::size_t i = 0; i < count; ++i) {
     fitRanked(current, recordings_, scored, shared_, options_.level, ranked[i]);
+    stage.advance();
   }
   if (count == 0 || !options_.accepted.empty()) {
     return;

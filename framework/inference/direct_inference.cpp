@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
@@ -134,6 +135,7 @@ bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::Vect
       static_cast<Eigen::Index>(found.available.size()) < kFewest) {
     return false;
   }
+  const SearchStage stage("does a fault of the clock explain it");
   const NoiseHypothesis noise = simulator_.describeNoise(found.clipped);
   std::optional<ClockedMeasurement> clocked =
       findClockFaults({experiment, reader_.getLayout(), found.features, known, noise},
@@ -155,6 +157,7 @@ std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, co
   if (!fit.isSimulated() || fit.isPlausible()) {
     return "";
   }
+  const SearchStage stage("does a fault of the recording explain it");
   const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
     return simulator.findLeastChiSquare(simulator.getExtractor().extract(corrected), known,
                                         static_cast<Eigen::Index>(found.available.size()));

@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/run_tasks.hpp"
@@ -300,8 +302,11 @@ std::vector<RecordingInference> JointInferrer::inferAlone(const std::vector<Reco
   const int threads = countThreads();
   const bool side_by_side =
       recordings.size() >= static_cast<std::size_t>(threads) || mayRunSideBySide(problems.front());
+  SearchStage stage("each recording alone", static_cast<int>(recordings.size()));
+  std::atomic<int> done{0};
   runTasks(side_by_side ? threads : 1, recordings.size(), [&](std::size_t k) {
     alone[k].posterior = samplePosterior(problems[k], MatrixXd(problems[k].drawn, 0), options_);
+    stage.show(++done, static_cast<int>(recordings.size()));
   });
   for (std::size_t k = 0; k < recordings.size(); ++k) {
     alone[k].inferred.posterior =
@@ -352,6 +357,7 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   }
   const auto shared = static_cast<Index>(getParameters().size());
   const PosteriorProblem problem = makeProblem(recordings, std::move(trials));
+  const SearchStage together("all recordings together");
   inferred.joint = samplePosterior(problem, makeStarts(problem, inferred.alone, shared), joint_options_);
   inferred.simulations += inferred.joint.simulations;
   if (!(inferred.joint.degrees > 0.0)) {

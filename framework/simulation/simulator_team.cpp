@@ -51,6 +51,12 @@ int countThreads() {
   return omp_in_parallel() ? 1 : omp_get_max_threads();
 }
 
+void setThreads(int threads) {
+  if (threads > 0) {
+    omp_set_num_threads(threads);
+  }
+}
+
 void runOnTeam(const std::vector<std::unique_ptr<Simulator>>& team, int count, int size,
                const std::function<void(Simulator& simulator, int index)>& task) {
   FirstException failure;

@@ -8,6 +8,8 @@ namespace twinmap {
 
 /// Threads that a parallel region would have here: in another one it has one.
 int countThreads();
+/// So many for what follows in this process; 0: as many as OpenMP offers.
+void setThreads(int threads);
 
 /// Calls task(simulator, i) for i = 0 .. count - 1 on a team of threads (0: as many as OpenMP offers), each
 /// with its own clone of `prototype`. Tasks start in order and must not depend on one another. An exception

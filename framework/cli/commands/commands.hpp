@@ -122,6 +122,7 @@ struct InferArguments {
   std::string draws;                ///< file for them; "": none
   std::string profile;              ///< file for profile likelihoods; "": none
   std::string page;                 ///< file for the parameters over the measurements; "": none
+  int threads = 0;                  ///< 0: all
   bool diagnose = false;            ///< of each model_mismatch, say at length what the model lacks
 };
 
@@ -135,6 +136,7 @@ struct DiagnoseArguments {
   std::string out;                    ///< file for the corrected experiment; "": none
   std::string page;                   ///< file for the residuals and the unknown forces; "": none
   bool json = false, csv = false;     ///< at most one; neither: a human-readable table
+  int threads = 0;                    ///< 0: all
 };
 
 struct ValidateArguments {
@@ -146,6 +148,7 @@ struct ValidateArguments {
   std::vector<double> against_starts;  ///< in `against`
   std::optional<double> max_rms;  ///< of a prediction, in noise standard deviations; none: what noise allows
   bool json = false;
+  int threads = 0;  ///< 0: all
 };
 
 struct SelectArguments {
@@ -153,6 +156,7 @@ struct SelectArguments {
   std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
   std::vector<double> starts;      ///< as of diagnose
   bool json = false;
+  int threads = 0;  ///< 0: all
 };
 
 struct ExportArguments {

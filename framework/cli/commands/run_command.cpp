@@ -36,7 +36,7 @@ RunControl makeControl(const RunArguments& arguments, ProgressLine& line) {
 void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, const fs::path& folder) {
   requireMemory(experiment, arguments.threads, getMostMemory(arguments));
   requireModel(experiment);  // before the folder is touched
-  ProgressLine line;
+  ProgressLine line(arguments.quiet);
   RunOptions options;
   options.folder = folder;
   options.store = arguments.store;
@@ -61,7 +61,7 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
 void runFeaturesOnly(const ExperimentSpec& experiment, const RunArguments& arguments,
                      const fs::path& folder) {
   requireModel(experiment);
-  ProgressLine line;
+  ProgressLine line(arguments.quiet);
   RunOptions options;
   options.folder = folder;
   options.store = arguments.store;
@@ -73,7 +73,7 @@ void runFeaturesOnly(const ExperimentSpec& experiment, const RunArguments& argum
 
 void runCases(const YamlNode& tree, const RunArguments& arguments, const fs::path& folder) {
   showWarningsOnly();
-  ProgressLine line;
+  ProgressLine line(arguments.quiet);
   SweepOptions options;
   options.folder = folder;
   options.store = arguments.store;

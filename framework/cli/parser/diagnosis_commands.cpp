@@ -76,6 +76,7 @@ void addDiagnose(CLI::App& app) {
       ->type_name("FILE");
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments->json, "Print a line of JSON")->excludes(csv);
+  addThreads(*command, arguments->threads);
   command->callback([arguments] { diagnose(*arguments); });
 }
 
@@ -108,6 +109,7 @@ void addValidate(CLI::App& app) {
       ->type_name("R");
   command->add_flag("--json", arguments->json, "Print a line of JSON");
   refuseTrials(*command);
+  addThreads(*command, arguments->threads);
   command->callback([arguments] { validate(*arguments); });
 }
 
@@ -124,6 +126,7 @@ void addSelect(CLI::App& app) {
   addStarts(*command, arguments->starts);
   command->add_flag("--json", arguments->json, "Print a line of JSON");
   refuseTrials(*command);
+  addThreads(*command, arguments->threads);
   command->callback([arguments] { select(*arguments); });
 }
 

@@ -97,6 +97,7 @@ void addInfer(CLI::App& app) {
       ->add_flag("--diagnose", arguments->diagnose,
                  "Where the model does not fit, the whole table of what it may lack, as diagnose prints it")
       ->excludes(csv);
+  addThreads(*command, arguments->threads);
   command->callback([arguments] { infer(*arguments); });
 }
 

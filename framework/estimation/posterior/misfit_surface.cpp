@@ -88,6 +88,7 @@ std::size_t MisfitSurface::countWindows() const {
 }
 
 void MisfitSurface::setWindow(std::size_t window) {
+  sees_all_ = window + 1 >= countWindows();
   for (MeasuredPart& part : parts_) {
     if (part.model == nullptr) {
       continue;

@@ -62,6 +62,8 @@ class MisfitSurface {
   std::size_t countWindows() const;
   /// Every part looks at its window of that number from now on, its last one where it has fewer.
   void setWindow(std::size_t window);
+  /// Whether every part looks at its last window.
+  bool seesAll() const { return sees_all_; }
 
   /// Points (u x n) in half-widths of the bounds, as the parts take them.
   Eigen::MatrixXd toBox(const Eigen::MatrixXd& points) const;
@@ -95,6 +97,7 @@ class MisfitSurface {
   const LogCoordinates& coordinates_;
   const Prior& prior_;
   const bool side_by_side_;
+  bool sees_all_ = true;
 };
 
 }  // namespace twinmap

@@ -124,10 +124,24 @@ SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const Mat
   }
 }
 
+/// How many searches have ended, and the best of them.
+void SearchTeam::showProgress(SearchStage& stage) const {
+  const auto ended =
+      std::count_if(searches_.begin(), searches_.end(), [](const Search& search) { return !search.active; });
+  stage.show(static_cast<int>(ended), static_cast<int>(searches_.size()));
+  const LocalSurface* best = surface_.seesAll() ? findBest() : nullptr;
+  if (best != nullptr) {
+    const VectorXd values = surface_.getCoordinates().toParameters(best->at);
+    noteBest(best->chi_square, best->degrees, {values.begin(), values.end()});
+  }
+}
+
 void SearchTeam::run(int max_iterations) {
+  SearchStage stage("searches that have ended", static_cast<int>(searches_.size()));
   constexpr int kJudgedAgainstKnown = 3;  // what must be better than a known basin, sooner
   const int first_judged = known_.empty() ? pace_.first_judged : kJudgedAgainstKnown;
   for (int i = 1; i <= max_iterations && improve(); ++i) {
+    showProgress(stage);
     if (i == first_judged || i == 2 * first_judged) {
       giveUpHopeless();
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/estimation/posterior/basin_search.hpp"
 
 namespace twinmap {
@@ -64,6 +65,7 @@ class SearchTeam {
     double misfit;
   };
 
+  void showProgress(SearchStage& stage) const;
   bool improve();
   std::vector<Search*> listActive();
   void move(const std::vector<Search*>& moved, const Eigen::MatrixXd& to);

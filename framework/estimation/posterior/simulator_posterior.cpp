@@ -4,6 +4,7 @@
 #include <limits>
 #include <numeric>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/estimation/informativeness.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
@@ -47,6 +48,14 @@ ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTri
   }
   return ResidualLoss(trial.noise, *trial.model, trial.model->getWhole())
       .standardize(best.residual, jacobian, best.degrees);
+}
+
+std::vector<std::string> listNames(const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> names;
+  for (const ParameterSpec& parameter : parameters) {
+    names.push_back(parameter.name.text);
+  }
+  return names;
 }
 
 /// Moments, draws and modes, of the first parameters, as many as `coordinates` has.
@@ -107,6 +116,8 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   ProblemSurface whole(problem);
   MisfitSurface& surface = whole.upd();
   const LogCoordinates& coordinates = whole.getCoordinates();
+  std::optional<SearchStage> stage(std::in_place, "search for the best fit");
+  beginBest(listNames(problem.unknown));
   const MatrixXd starts = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
   const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed,
                                        limitSearch(options.search, problem.drawn));
@@ -117,6 +128,8 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     posterior.message = "every search failed at its first simulation";
     return posterior;
   }
+  stage.reset();
+  stage.emplace("draw from the posterior");
   setBest(found, coordinates, posterior);
   if (problem.trials.size() == 1) {
     posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
@@ -138,6 +151,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     setDraws(sampling.drawn, sampling.landscape, LogCoordinates(kept, sampling.plain), posterior);
     posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
     if (options.profiles && problem.drawn == surface.getDimensions() && problem.drawn <= kManyUnknown) {
+      const SearchStage profiles("profiles of the likelihood");
       setProfiles(problem, whole, posterior);
     }
   } else if (posterior.isExplained() && mayBend(problem)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/data/sensitivity/stencil_simulator.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -142,7 +143,9 @@ void Misfit::linearizeBatch(const MatrixXd& points, int neighbours, std::vector<
   MatrixXd stencils(simulator_.getLayout().getRowCount() * neighbours, points.cols());
   std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
   simulateStencils(simulator_, model_.getUnknown(), sampled, stencils, statuses.data());
-  simulations_ += static_cast<int>(points.cols()) * (simulator_.hasDerivatives() ? 1 : neighbours);
+  const int simulated = static_cast<int>(points.cols()) * (simulator_.hasDerivatives() ? 1 : neighbours);
+  simulations_ += simulated;
+  noteSimulations(simulated);
   for (Index i = 0; i < points.cols(); ++i) {
     all.push_back(makeLocalMisfit(points.col(i),
                                   makeLocalModel(model_.getExtractor(), model_.getUnknown(), sampled.col(i),
@@ -170,6 +173,7 @@ MatrixXd Misfit::simulateResiduals(const MatrixXd& points, std::vector<SampleSta
   statuses.resize(static_cast<std::size_t>(points.cols()));
   simulator_.simulate(sampled, responses, statuses.data());
   simulations_ += static_cast<int>(points.cols());
+  noteSimulations(points.cols());
   const MatrixXd differences = (-model_.getExtractor().extract(responses)).colwise() + measured_;
   return getWhitener().apply(differences(window_->features, Eigen::all));
 }

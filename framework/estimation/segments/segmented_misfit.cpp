@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -109,6 +110,7 @@ void SegmentedMisfit::simulate(const MatrixXd& points, bool with_derivatives,
     simulator_.simulate(sampled, responses, statuses.data());
   }
   simulations_ += static_cast<int>(count);
+  noteSimulations(count);
   for (Index i = 0; i < count; ++i) {
     SegmentFit& fit = *fits[static_cast<std::size_t>(i)];
     fit.status = statuses[static_cast<std::size_t>(i)];

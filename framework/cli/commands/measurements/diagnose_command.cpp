@@ -4,19 +4,23 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/inference_source.hpp"
 #include "framework/inference/measurement/known_value.hpp"
+#include "framework/simulation/simulator_team.hpp"
 #include "framework/study/diagnosis/diagnosis_page.hpp"
 
 namespace twinmap::cli {
 namespace {
 
-void printBlindSpots(const DiagnoseArguments& arguments, const ExperimentSpec& experiment) {
+void printBlindSpots(const DiagnoseArguments& arguments, const ExperimentSpec& experiment,
+                     WaitingLine& waiting) {
   const RecordedFeatures none = makeEmptyRecordings(experiment, parseKnownValues(arguments.known));
   const std::vector<BlindSpot> spots = calcBlindSpots(experiment, none, DiagnosisOptions{}.level);
+  waiting.clear();
   const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
   std::cout << (arguments.json  ? makeBlindSpotJson(spots, parameters) + "\n"
                 : arguments.csv ? makeBlindSpotCsv(spots, parameters)
@@ -60,11 +64,15 @@ RecordedFeatures readArguments(const DiagnoseArguments& arguments, const Measure
 }  // namespace
 
 void diagnose(const DiagnoseArguments& arguments) {
+  setThreads(arguments.threads);
+  const std::string name =
+      fmt::format("{}", fmt::join(arguments.trials.empty() ? arguments.files : arguments.trials, ", "));
+  WaitingLine waiting("diagnose " + (name.empty() ? arguments.run : name));
   const InferenceSource source(arguments.run);
   const MeasurementReader& reader = source.getReader();
   if (arguments.files.empty() && arguments.trials.empty()) {
     requireMeasurements(arguments);
-    printBlindSpots(arguments, reader.getExperiment());
+    printBlindSpots(arguments, reader.getExperiment(), waiting);
     return;
   }
   const RecordedFeatures recordings = readArguments(arguments, reader);
@@ -72,8 +80,7 @@ void diagnose(const DiagnoseArguments& arguments) {
   options.accepted = arguments.accepted;
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
   const Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
-  const std::string name =
-      fmt::format("{}", fmt::join(arguments.trials.empty() ? arguments.files : arguments.trials, ", "));
+  waiting.clear();
   std::cout << (arguments.json  ? makeDiagnosisJson(diagnosis, name) + "\n"
                 : arguments.csv ? makeDiagnosisCsv(diagnosis, name)
                                 : makeDiagnosisTable(diagnosis, name));

@@ -24,6 +24,7 @@
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/report/history/history_page.hpp"
+#include "framework/simulation/simulator_team.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -75,8 +76,9 @@ class InferCommand {
     if (starts_.empty()) {
       starts_.emplace_back(std::nullopt);
     }
-    printer_.printHeader();
   }
+
+  void printHeader() const { printer_.printHeader(); }
 
   void inferFile(const std::string& file) {
     try {
@@ -117,13 +119,13 @@ class InferCommand {
   void inferTable(const Table& table) {
     for (const std::optional<double>& start : starts_) {
       try {
-        WaitingLine waiting("inferring " + table.source);
+        WaitingLine waiting("infer " + nameWindow(table.source, start));
         InferredMeasurement inferred = session_->infer(table, start, known_);
         inferred.run = run_;
         std::optional<RecordedFeatures> recording;
         if (names_missing_ && source_.getReader().findReduction() == nullptr && inferred.fault.empty() &&
             (isMismatch(selectEstimate(inferred).statuses) || !inferred.clock_faults.empty())) {
-          waiting.describe("looking for what the model lacks, " + table.source);
+          waiting.describe("look for what the model lacks, " + nameWindow(table.source, start));
           recording = readRecording(source_.getReader(), table, start, known_);
           inferred.missing = findMissingTerm(source_.getExperiment(), *recording, inferred);
         }
@@ -230,6 +232,7 @@ void requireOnePage(const InferArguments& arguments) {
 
 void infer(const InferArguments& arguments) {
   keepFreedMemory();
+  setThreads(arguments.threads);
   const bool is_of_several =
       arguments.segments || !arguments.trials.empty() || arguments.joint || arguments.windows;
   if (is_of_several && !arguments.profile.empty()) {
@@ -250,7 +253,10 @@ void infer(const InferArguments& arguments) {
   }
   requireOnePage(arguments);
   std::ios::sync_with_stdio(false);
+  std::optional<WaitingLine> preparing(std::in_place, "read " + arguments.run);
   InferCommand command(arguments);
+  preparing.reset();
+  command.printHeader();
   if (arguments.follow) {
     command.inferStream(std::cin);
   }

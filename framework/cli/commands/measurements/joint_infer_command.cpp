@@ -94,7 +94,7 @@ void inferJointly(const InferArguments& arguments) {
     throw ExperimentError(
         "one recording alone is not inferred jointly; give several files, starts or windows");
   }
-  WaitingLine waiting(fmt::format("inferring from {} recordings", recordings.get().size()));
+  WaitingLine waiting(fmt::format("infer from {} recordings", recordings.get().size()));
   const JointInference inferred = inferrer.infer(recordings.get());
   waiting.clear();
   if (arguments.json) {

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/missing_term.hpp"
 #include "framework/inference/measurement/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
@@ -68,11 +69,13 @@ void nameMissing(const std::string& run, const Inferrer& inferrer, Replay& repla
 }  // namespace
 
 void replay(const ReplayArguments& arguments) {
+  WaitingLine waiting("replay " + nameWindow(arguments.file, arguments.start));
   const Inferrer inferrer(arguments.run);
   Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer));
   nameMissing(arguments.run, inferrer, replay);
   const fs::path folder = chooseFolder(arguments);
   writeReplay(folder, inferrer, replay);
+  waiting.clear();
   std::cout << describeTrust(replay.inferred, inferrer.getExperiment().model.parameters,
                              inferrer.getExtractor().getInfos())
             << describeMapLimit(replay.inferred, inferrer.getExperiment().model.parameters) << "\n"

@@ -57,7 +57,7 @@ void inferInSegments(const InferArguments& arguments) {
   for (const std::string& file : arguments.files) {
     const Table table = readTable(file, inference.listColumns(), MissingCells::kKeep);
     for (const std::optional<double>& start : starts) {
-      WaitingLine waiting("inferring " + file + " in segments");
+      WaitingLine waiting("infer " + nameWindow(file, start) + " in segments");
       const InferredMeasurement inferred = inference.infer(table, start);
       waiting.clear();
       printer.print(inferred, inferred.segments->samples, is_first);

@@ -10,10 +10,12 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/held_out.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/structures.hpp"
 #include "framework/inference/inference_source.hpp"
+#include "framework/simulation/simulator_team.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -95,6 +97,7 @@ SizedNoise takeLeastNoise(std::vector<Source>& all) {
 }
 
 Structure fitStructure(const Source& one) {
+  const SearchStage stage("fit " + one.file);
   return {one.file, one.experiment.model.parameters.size(),
           calcStructureFit(one.experiment, one.recordings, one.makeOptions())};
 }
@@ -144,6 +147,8 @@ void select(const SelectArguments& arguments) {
   if (experiments.size() < 2 || measurements.empty()) {
     throw ExperimentError("give two or more experiment files (YAML), then files of measurements");
   }
+  setThreads(arguments.threads);
+  WaitingLine waiting(fmt::format("select by {}", fmt::join(measurements, ", ")));
   std::vector<Source> sources;
   for (const std::string& file : experiments) {
     sources.push_back(readSource(file, measurements, arguments));
@@ -156,6 +161,7 @@ void select(const SelectArguments& arguments) {
     return a.fit.log_evidence > b.fit.log_evidence;
   });
   const double best = all.front().fit.log_evidence;
+  waiting.clear();
   std::cout << (arguments.json ? makeStructureJson(all, best, noise) + "\n"
                                : makeStructureTable(all, best, noise));
 }

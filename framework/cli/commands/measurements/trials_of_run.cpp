@@ -81,7 +81,7 @@ bool inferTrialsByRun(const InferArguments& arguments) {
     return false;
   }
   const std::unique_ptr<MeasurementInference> session = source.makeSession(makeSessionOptions(arguments));
-  WaitingLine waiting("inferring " + names);
+  WaitingLine waiting("infer " + names);
   InferredMeasurement inferred = session->infer(*features, readKnown(arguments, source.getReader()));
   waiting.clear();
   inferred.source = names;

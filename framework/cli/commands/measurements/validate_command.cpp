@@ -7,8 +7,10 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/held_out.hpp"
 #include "framework/inference/inference_source.hpp"
+#include "framework/simulation/simulator_team.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -69,6 +71,8 @@ std::string makeValidationJson(const std::vector<Validated>& all, const std::vec
 }  // namespace
 
 void validate(const ValidateArguments& arguments) {
+  setThreads(arguments.threads);
+  WaitingLine waiting(fmt::format("validate {}", fmt::join(arguments.files, ", ")));
   const InferenceSource source(arguments.run);
   const MeasurementReader& reader = source.getReader();
   const std::vector<KnownValue> known = parseKnownValues(arguments.known);
@@ -85,11 +89,13 @@ void validate(const ValidateArguments& arguments) {
       one.source = windows.features.size() == 1
                        ? file
                        : fmt::format("{} from {} s", file, toText(arguments.against_starts[k]));
+      const SearchStage stage("predict " + one.source);
       one.prediction = predictHeldOut(experiment, windows.select({k}), machine);
       one.is_good = isGood(one.prediction, arguments.max_rms);
       all.push_back(one);
     }
   }
+  waiting.clear();
   const std::vector<OutputSpec>& outputs = reader.getExperiment().model.outputs;
   std::cout << (arguments.json ? makeValidationJson(all, outputs) + "\n" : makeValidationTable(all, outputs));
   std::cout.flush();
