@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/sections.hpp"
@@ -94,8 +95,7 @@ std::string makeFacts(const std::vector<std::pair<std::string, std::string>>& fa
 
 std::string makeGateList(const std::vector<GateResult>& gates) {
   if (gates.empty()) {
-    return makeParagraph("No acceptance criteria are set ('gates:' in the experiment file).",
-                         "class=\"quiet\"");
+    return "";
   }
   std::string items;
   for (const GateResult& gate : gates) {
@@ -111,14 +111,16 @@ std::string makeGateList(const std::vector<GateResult>& gates) {
 }
 
 std::string makeWarningList(const std::vector<std::string>& warnings) {
-  std::string items;
+  const std::string mark = makeElement("span", "\u26a0 warning", "class=\"mark\"") + " ";
+  std::string items, remarks;
   for (const std::string& warning : warnings) {
-    const std::string mark = makeElement("span", "\u26a0 warning", "class=\"mark\"");
-    items += makeElement("li", mark + " " + makeElement("span", escapeHtml(warning))) + "\n";
+    const std::string text = makeElement("span", escapeHtml(warning));
+    (isRemark(warning) ? remarks : items) += makeElement("li", isRemark(warning) ? text : mark + text) + "\n";
   }
-  return warnings.empty()
-             ? ""
-             : makeElement("h3", "Warnings") + "\n" + makeElement("ul", items, "class=\"warnings\"") + "\n";
+  const auto list = [](const char* heading, const std::string& all, const char* attributes) {
+    return all.empty() ? "" : makeElement("h3", heading) + "\n" + makeElement("ul", all, attributes) + "\n";
+  };
+  return list("Warnings", items, "class=\"warnings\"") + list("Remarks", remarks, "class=\"quiet\"");
 }
 
 std::string describeCount(const SampleCount& samples) {
@@ -134,13 +136,14 @@ void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page
   section.html += makeParagraph(makeLead(run), "class=\"lead\"");
   section.html +=
       experiment.description.empty() ? "" : makeParagraph(experiment.description, "class=\"quiet\"");
+  section.html +=
+      makeErrorsTable(run.metrics) + makeGateList(gates) + makeWarningList(run.provenance.warnings);
   section.html += makeFacts({{"date", makeDate(run)},
                              {"training samples", describeCount(experiment.design.train.samples)},
                              {"test samples", std::to_string(experiment.design.test.samples)},
                              {"could not be simulated", std::to_string(run.failures.rows.size())},
                              {"seed", std::to_string(experiment.seed)},
                              {"wall time", makeSeconds(run)}});
-  section.html += makeGateList(gates) + makeWarningList(run.provenance.warnings);
   page.sections.push_back(std::move(section));
 }
 

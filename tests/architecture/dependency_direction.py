@@ -54,6 +54,7 @@ ALLOWED = {
     "cli": {
         "base",
         "experiment",
+        "simulation",
         "models",
         "models/fmu",
         "data",

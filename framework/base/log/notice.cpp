@@ -270,4 +270,8 @@ const NoticeText& getNotice(Notice notice) {
   return found;
 }
 
+bool isRemark(const std::string& text) {
+  return text.find("\n  Nothing need be done") != std::string::npos;
+}
+
 }  // namespace twinmap

@@ -102,6 +102,9 @@ std::string describeNotice(Notice notice, const Arguments&... arguments) {
                               : happened + "\n  " + fmt::format(fmt::runtime(text.remedy), arguments...);
 }
 
+/// Whether the text of a warning says that nothing need be done: a remark.
+bool isRemark(const std::string& text);
+
 /// The warning, of the severity that is listed.
 template <class... Arguments>
 Warning makeWarning(Notice notice, const Arguments&... arguments) {

@@ -5,6 +5,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
+#include "framework/base/log/notice.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
@@ -51,7 +52,7 @@ void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, 
            "permits. (..): standard error of the last digits.\n";
   }
   for (const std::string& warning : collectWarnings(summary)) {
-    std::cerr << "twinmap: warning: " << warning << "\n";
+    std::cerr << "twinmap: " << (isRemark(warning) ? "" : "warning: ") << warning << "\n";
   }
   std::cerr << "Report: " << (options.folder / "report.html").string() << "\n";
   requireGates(summary.gates, arguments.fail_on_gates);

@@ -52,6 +52,23 @@ std::string makeBaselines(const CsvTable& baselines) {
 
 }  // namespace
 
+std::string makeErrorsTable(const CsvTable& metrics) {
+  return metrics.empty()
+             ? ""
+             : makeHtmlTable("errors-table",
+                             "Standard deviation of the relative error of the test samples, the smallest "
+                             "that the noise permits, and the share of true values in the 95 % intervals.",
+                             metrics,
+                             {{"parameter", "parameter"},
+                              {"unit", "unit"},
+                              {"lower", "lower"},
+                              {"upper", "upper"},
+                              {"sd_pct", "sd %"},
+                              {"limit_pct", "limit %"},
+                              {"ratio_to_limit", "ratio"},
+                              {"coverage95", "coverage 95 %"}});
+}
+
 void addMetrics(const RunFolder& run, Page& page) {
   const CsvTable& metrics = run.metrics;
   if (metrics.empty()) {
@@ -66,18 +83,6 @@ void addMetrics(const RunFolder& run, Page& page) {
   page.texts.emplace_back("metrics-latex",
                           makeLatexRows(makeTextRows(metrics, columns, escapeLatex), kTextColumns));
   Section section{"metrics", "Errors of the estimates", "", {}};
-  section.html = makeHtmlTable("errors-table",
-                               "Standard deviation of the relative error of the test samples, the smallest "
-                               "that the noise permits, and the share of true values in the 95 % intervals.",
-                               metrics,
-                               {{"parameter", "parameter"},
-                                {"unit", "unit"},
-                                {"lower", "lower"},
-                                {"upper", "upper"},
-                                {"sd_pct", "sd %"},
-                                {"limit_pct", "limit %"},
-                                {"ratio_to_limit", "ratio"},
-                                {"coverage95", "coverage 95 %"}});
   const std::string all =
       makeHtmlTable("metrics-table", "Press a heading to sort.", metrics, columns) +
       makeCopyButtons(

@@ -12,6 +12,8 @@ namespace twinmap {
 // the texts to copy. Where the folder lacks the data, a chapter is left out or says how to get it.
 
 void addVerdict(const RunFolder& run, const std::vector<GateResult>& gates, Page& page);
+/// Of each parameter the error, the limit and the coverage; "" of none.
+std::string makeErrorsTable(const CsvTable& metrics);
 void addMetrics(const RunFolder& run, Page& page);
 /// How good the map alone is, and what refinement makes of its answers.
 void addMethods(const RunFolder& run, Page& page);

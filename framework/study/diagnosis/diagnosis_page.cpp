@@ -72,12 +72,13 @@ Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment
         makeLines(std::string(diagnosis.getStatus()) + ": " + describeNotice(Notice::kModelIncomplete));
   }
   constexpr std::size_t kListed = 3;
-  section.html +=
-      makeFacts({{"status", diagnosis.getStatus()},
-                 {"experiment", experiment.name.text},
-                 {names.size() > 1 ? "recordings" : "recording",
-                  names.size() > kListed ? fmt::format("{}, and {} more", names.front(), names.size() - 1)
-                                         : fmt::format("{}", fmt::join(names, ", "))}});
+  section.html += makeFacts(
+      {{diagnosis.found > 0 ? "status of the model with what was found" : "status of the model as it is",
+        diagnosis.getStatus()},
+       {"experiment", experiment.name.text},
+       {names.size() > 1 ? "recordings" : "recording",
+        names.size() > kListed ? fmt::format("{}, and {} more", names.front(), names.size() - 1)
+                               : fmt::format("{}", fmt::join(names, ", "))}});
   return section;
 }
 

@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "framework/base/log/notice.hpp"
+#include "framework/report/verdict.hpp"
 #include "tests/framework/report/run_fixture.hpp"
 
 namespace twinmap {
@@ -86,6 +88,28 @@ TEST_F(ReportTest, GatesAreListedAndAnswered) {
 
 TEST_F(ReportTest, WarningsOfTheRunAreShown) {
   EXPECT_NE(make().html.find("1 sample could not be simulated"), std::string::npos);
+}
+
+TEST_F(ReportTest, ParametersStandBeforeBookKeeping) {
+  const std::string html = make().html;
+  const std::size_t table = html.find("id=\"errors-table\""), facts = html.find("class=\"facts\"");
+  ASSERT_NE(table, std::string::npos);
+  EXPECT_LT(html.find("id=\"verdict\""), table);
+  EXPECT_LT(table, facts);
+  EXPECT_EQ(html.find("acceptance criteria"), std::string::npos);  // none are set
+}
+
+TEST_F(ReportTest, WhatNeedsNothingIsARemark) {
+  for (const Notice harmless : {Notice::kIntervalsTooWide, Notice::kRelativeToRange}) {
+    const std::string text = describeNotice(harmless, "k");
+    const std::string html = makeWarningList({text});
+    EXPECT_TRUE(isRemark(text));
+    EXPECT_EQ(html.find("warning"), std::string::npos) << html;
+    EXPECT_NE(html.find("Remarks"), std::string::npos);
+  }
+  const std::string needed = describeNotice(Notice::kCorrelated, "k and m");
+  EXPECT_FALSE(isRemark(needed));
+  EXPECT_NE(makeWarningList({needed}).find("warning"), std::string::npos);
 }
 
 TEST_F(ReportTest, MissingFilesLeaveTheirChapterOut) {
