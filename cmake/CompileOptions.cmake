@@ -69,14 +69,27 @@ if(TWINMAP_CCACHE)
   endif()
 endif()
 
-# twinmap_add_library(<target> [SOURCES <files...>] [MORE <files...>] [PRECOMPILED <name>] [BATCH <files>]
+# twinmap_add_library(<target> [SOURCES <files...>] [MORE <files...>] [PRECOMPILED <name>] [LIGHT <folders...>] [BATCH <files>]
 # [PUBLIC <targets...>] [PRIVATE <targets...>]): a static library of all C++ files below its folder, or of SOURCES, and of
 # MORE that are made elsewhere. Headers are included by their path from the project's root. PRECOMPILED as in
-# cmake/PrecompiledHeaders.cmake, framework by default; BATCH as in cmake/Batches.cmake.
+# cmake/PrecompiledHeaders.cmake, framework by default; LIGHT: folders that organise, in a library that computes; BATCH as in
+# cmake/Batches.cmake.
 function(twinmap_add_library target)
-  cmake_parse_arguments(ARG "" "PRECOMPILED;BATCH" "SOURCES;MORE;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "PRECOMPILED;BATCH" "SOURCES;MORE;LIGHT;PUBLIC;PRIVATE" ${ARGN})
   if(NOT ARG_SOURCES)
     file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS *.cpp)
+  endif()
+  if(ARG_LIGHT)
+    string(JOIN "|" light_folders ${ARG_LIGHT})
+    set(light_sources ${ARG_SOURCES})
+    list(FILTER light_sources INCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/(${light_folders})/")
+    list(FILTER ARG_SOURCES EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/(${light_folders})/")
+    add_library(${target}_light OBJECT ${light_sources})
+    target_include_directories(${target}_light PUBLIC "${PROJECT_SOURCE_DIR}")
+    target_link_libraries(${target}_light PRIVATE ${ARG_PUBLIC} ${ARG_PRIVATE})
+    twinmap_use_precompiled(${target}_light light)
+    twinmap_compile_in_batches(${target}_light light)
+    list(APPEND ARG_MORE $<TARGET_OBJECTS:${target}_light>)
   endif()
   add_library(${target} STATIC ${ARG_SOURCES} ${ARG_MORE})
   target_include_directories(${target} PUBLIC "${PROJECT_SOURCE_DIR}")
