@@ -6,6 +6,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/expression/expression.hpp"
 #include "framework/experiment/fields/write_value.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 

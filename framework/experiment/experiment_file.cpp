@@ -9,6 +9,7 @@
 #include "framework/experiment/fields/write_value.hpp"
 #include "framework/experiment/files/prior_files.hpp"
 #include "framework/experiment/files/signal_files.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
 #include "framework/experiment/sweep/swept_keys.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"

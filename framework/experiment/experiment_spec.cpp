@@ -1,5 +1,7 @@
 #include "framework/experiment/experiment_spec.hpp"
 
+#include "framework/experiment/model/elements/force_elements.hpp"
+
 // Copies and destructors of specs that most of the framework handles: compiled in every unit they took a
 // tenth of the build.
 namespace twinmap {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/mechanism/equations/switches.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 

@@ -9,6 +9,7 @@
 #include "framework/diagnosis/candidates/observed_motion.hpp"
 #include "framework/diagnosis/diagnosis.hpp"
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"

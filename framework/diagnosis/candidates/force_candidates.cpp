@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/diagnosis/candidates/term_candidates.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {

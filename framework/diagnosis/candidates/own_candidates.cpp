@@ -4,6 +4,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 

@@ -7,6 +7,7 @@
 #include "framework/data/measurement/measured_signals.hpp"
 #include "framework/diagnosis/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {

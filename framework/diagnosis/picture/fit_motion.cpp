@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/experiment/expression/expression.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 

@@ -1,4 +1,5 @@
 #include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {

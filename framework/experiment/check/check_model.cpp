@@ -10,6 +10,7 @@
 #include "framework/experiment/check/field_check.hpp"
 #include "framework/experiment/expression/expression_tree.hpp"
 #include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/named_forces.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
+
 namespace twinmap {
 namespace {
 

@@ -8,6 +8,9 @@
 
 namespace twinmap {
 
+template <class S>
+struct ForceLaw;
+
 /// Why an expression of a force makes an integrator take very small steps, and what to write instead:
 /// "sign(x_dot) jumps: write tanh(x_dot / eps), eps a small value of x_dot"; "" where it has neither sign(),
 /// abs() nor floor() or rint(). The first of several.

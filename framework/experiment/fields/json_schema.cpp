@@ -5,6 +5,7 @@
 #include "framework/base/json/json.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/experiment/fields/one_of.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/sweep/sweep_spec.hpp"
 
 namespace twinmap {

@@ -6,7 +6,7 @@
 #include "framework/experiment/model/constraint_spec.hpp"
 #include "framework/experiment/model/controller_spec.hpp"
 #include "framework/experiment/model/curve_spec.hpp"
-#include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/model/elements/element_lists.hpp"
 #include "framework/experiment/model/initial_spec.hpp"
 #include "framework/experiment/model/motion_spec.hpp"
 #include "framework/experiment/model/state_spec.hpp"

@@ -9,6 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "framework/experiment/expression/expression.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {

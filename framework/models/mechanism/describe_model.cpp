@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "kernels/linalg/decompositions.hpp"

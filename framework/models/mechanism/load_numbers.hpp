@@ -1,5 +1,6 @@
 #pragma once
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/system_spec.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 #include "framework/simulation/model_numbers.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/text/nearest_name.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/named_forces.hpp"
 
 namespace twinmap {

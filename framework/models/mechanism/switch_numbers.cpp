@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
+
 namespace twinmap {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "framework/base/text/nearest_name.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {

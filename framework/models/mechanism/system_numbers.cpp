@@ -4,6 +4,7 @@
 
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/constraint_numbers.hpp"
 #include "framework/models/mechanism/load_numbers.hpp"

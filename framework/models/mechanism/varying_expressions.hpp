@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {

@@ -6,6 +6,7 @@
 #include "framework/base/files/digest.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/fields/write_value.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {

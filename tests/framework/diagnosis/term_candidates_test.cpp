@@ -9,6 +9,7 @@
 #include "framework/diagnosis/augment.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "tests/framework/experiment/experiments.hpp"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
+
 namespace twinmap {
 namespace {
 

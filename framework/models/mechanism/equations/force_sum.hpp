@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/mechanism/equations/tree.hpp"
 
 namespace twinmap::equations {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/mechanism/equations/model_equations.hpp"
 
 // What joints, force elements and constraints exert, from the accelerations of a motion.

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/system_spec.hpp"
 #include "kernels/lanes/program/real.hpp"
 

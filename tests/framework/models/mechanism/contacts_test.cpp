@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 
 namespace twinmap::testing {

@@ -1,5 +1,6 @@
 // Curves in the equations of motion: by both engines, and with exact derivatives with respect to their knots.
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/mechanism/equations/outputs.hpp"
 #include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "framework/models/mechanism/simbody/outputs.hpp"

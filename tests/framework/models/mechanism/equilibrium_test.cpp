@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 #include "tests/framework/models/mechanism/two_beam.hpp"

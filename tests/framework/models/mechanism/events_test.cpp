@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/experiment/check/check_pairs.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "tests/framework/models/mechanism/events_golden.hpp"
 #include "tests/framework/models/mechanism/exact_events.hpp"
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <complex>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 
 namespace twinmap::testing {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/compare_with_simbody.hpp"
 #include "framework/simulation/sample_generator.hpp"

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap::testing {

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 

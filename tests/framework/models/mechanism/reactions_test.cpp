@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "tests/framework/models/mechanism/random_trees.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 #include "tests/framework/models/mechanism/sampled_golden.hpp"

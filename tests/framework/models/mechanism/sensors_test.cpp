@@ -1,4 +1,5 @@
 // A mass of 2 kg that flies on without forces: y = y_0 + v_0 t.
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 
 namespace twinmap::testing {

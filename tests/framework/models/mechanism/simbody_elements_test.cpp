@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/mechanism/equations/model_equations.hpp"
 #include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "tests/framework/models/mechanism/random_state.hpp"

@@ -1,4 +1,5 @@
 // A simulation that begins within the excitation's time is the rest of one that begins at 0.
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 
 namespace twinmap::testing {

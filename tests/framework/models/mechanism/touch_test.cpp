@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "tests/framework/models/mechanism/exact_events.hpp"
 
 namespace twinmap::testing {

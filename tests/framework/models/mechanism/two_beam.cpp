@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "tests/framework/models/mechanism/model_builder.hpp"
 
 namespace twinmap::testing {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "tests/framework/models/mechanism/run_model.hpp"
 
