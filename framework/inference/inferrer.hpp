@@ -13,6 +13,7 @@
 #include "framework/inference/measurement/measurement_reader.hpp"
 #include "framework/inference/posterior_estimate.hpp"
 #include "framework/inference/stated_prior.hpp"
+#include "framework/inference/text/asked.hpp"
 #include "framework/store/trained_file.hpp"
 
 namespace twinmap {
@@ -35,13 +36,13 @@ struct SegmentReport {
 
 /// What a measurement says about the machine.
 struct InferredMeasurement {
-  std::string source;                   ///< the file
-  std::string run{};                    ///< what it was inferred by, as the user calls it; "" if not known
-  double start = 0.0;                   ///< time in the file that is 0 of the model, s
-  std::vector<std::string> remarks{};   ///< how it was read, a phrase each
-  std::vector<std::string> left_out{};  ///< what of the recording is missing and why, a phrase each
-  Estimate by_estimator;                ///< not given where there is no trained estimator
-  bool estimator_is_calibrated = true;  ///< isCalibrated()
+  std::string source;                        ///< the file
+  Asked asked{};                             ///< what the user asked for
+  double start = 0.0;                        ///< time in the file that is 0 of the model, s
+  std::vector<std::string> remarks{};        ///< how it was read, a phrase each
+  std::vector<std::string> left_out{};       ///< what of the recording is missing and why, a phrase each
+  Estimate by_estimator;                     ///< not given where there is no trained estimator
+  bool estimator_is_calibrated = true;       ///< isCalibrated()
   bool estimator_coverage_is_short = false;  ///< of the run's test samples, unrefined (CoverageRecord)
   std::optional<Trust> trust;                ///< none where the run could fit no trust model
   Eigen::VectorXd explanation;   ///< sampled point that explains the features best; empty without trust

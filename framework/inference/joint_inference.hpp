@@ -49,6 +49,7 @@ struct JointInference {
   std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first
   std::vector<ScatterEstimate> scatter;       ///< of each parameter; empty unless they disagree
   int simulations = 0;
+  Asked asked{};  ///< what the user asked for
 
   bool disagrees() const { return agreement && agreement->p_value < kAgreementLevel; }
 };

@@ -12,7 +12,7 @@ constexpr Severity kMisleading = Severity::kMisleading, kDegraded = Severity::kD
 const std::vector<NoticeText> kStatuses{
     {Notice::kOk, "ok", true, kInfo, "the model explains the measurement", "", "No test found a fault."},
     {Notice::kModelMismatch, "model_mismatch", true, kMisleading,
-     "no parameter values within the bounds fit the measurement; {0}",
+     "the model does not explain the measurement: {0}",
      "Ask what the model lacks: twinmap diagnose RUN FILE.",
      "The model lacks something, a sensor, sign, unit or trigger is wrong, or the noise is larger than "
      "stated."},
@@ -48,10 +48,9 @@ const std::vector<NoticeText> kStatuses{
      "State the noise that was found: noise.stddev.",
      "The residuals are as independent as noise, but smaller than stated."},
     {Notice::kNoiseColoured, "noise_coloured", true, kInfo,
-     "the noise of {0} is coloured, neighbouring samples have a correlation of {1:.2f}; the intervals follow "
-     "it",
+     "the noise of {0} is coloured, {1}; the intervals follow it",
      "State it: noise.correlation; or look whether the model lacks something small.",
-     "Neighbouring residuals agree, and are no larger than the stated noise."},
+     "Neighbouring residuals are alike, or alternate, and are no larger than the stated noise."},
     {Notice::kSensorOffset, "sensor_offset", true, kInfo,
      "{0} reads {1} too much (sd {2}); the estimate does without this constant",
      "Take the offset off the recording, or let the model have it as a nuisance parameter.",

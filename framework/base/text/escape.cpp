@@ -23,6 +23,17 @@ std::string escapeCsv(const std::string& text) {
   return "\"" + replaceEach(text, {{'"', "\"\""}}) + "\"";
 }
 
+std::string quoteForShell(const std::string& text) {
+  if (text.find_first_of(" '\"\\$`!*?[]{}()<>|&;~#") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "'";
+  for (const char c : text) {
+    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return quoted + "'";
+}
+
 std::string escapeMarkdown(const std::string& text) {
   return replaceEach(
       text,

@@ -21,7 +21,8 @@ struct LagTest {
   Index lags;
   double share;
 };
-constexpr LagTest kLagTests[] = {{1, 0.4}, {3, 0.4}, {10, 0.1}};
+constexpr Index kMostLags = 10;
+constexpr LagTest kLagTests[] = {{1, 0.4}, {3, 0.4}, {kMostLags, 0.1}};
 constexpr Index kSamplesPerLag = 5, kMinSamples = 20;
 
 /// The residuals of each output's samples, in the order of time.
@@ -36,13 +37,18 @@ std::map<int, std::vector<double>> collectSamples(const VectorXd& residual,
   return samples;
 }
 
+/// Of residuals so many samples apart.
+double calcCorrelation(const std::vector<double>& values, Index lag) {
+  const Eigen::Map<const VectorXd> r(values.data(), static_cast<Index>(values.size()));
+  return r.head(r.size() - lag).dot(r.tail(r.size() - lag)) / r.squaredNorm();
+}
+
 /// n (n + 2) sum_k rho_k^2 / (n - k) over the lags: chi-square of as many degrees for white noise.
 double calcLjungBox(const std::vector<double>& values, Index lags) {
-  const Eigen::Map<const VectorXd> r(values.data(), static_cast<Index>(values.size()));
-  const auto n = static_cast<double>(r.size());
+  const auto n = static_cast<double>(values.size());
   double sum = 0.0;
   for (Index k = 1; k <= lags; ++k) {
-    const double correlation = r.head(r.size() - k).dot(r.tail(r.size() - k)) / r.squaredNorm();
+    const double correlation = calcCorrelation(values, k);
     sum += correlation * correlation / (n - static_cast<double>(k));
   }
   return n * (n + 2.0) * sum;
@@ -66,9 +72,26 @@ double testWhiteness(const std::map<int, std::vector<double>>& samples, Index la
   return degrees > 0.0 && std::isfinite(statistic) ? calcUpperTail(statistic, degrees) : 1.0;
 }
 
+/// Where samples depend most on each other, in standard deviations of a correlation by chance.
+void findDependence(const std::map<int, std::vector<double>>& samples, ResidualTest& test) {
+  double strongest = 0.0;
+  for (const auto& [output, values] : samples) {
+    const auto count = static_cast<Index>(values.size());
+    for (Index lag = 1; count >= kMinSamples && lag <= std::min(kMostLags, count / kSamplesPerLag); ++lag) {
+      const double correlation = calcCorrelation(values, lag);
+      const double deviations = std::abs(correlation) * std::sqrt(static_cast<double>(count));
+      if (deviations > strongest) {
+        strongest = deviations;
+        test.output = output;
+        test.lag = static_cast<int>(lag);
+        test.correlation = correlation;
+      }
+    }
+  }
+}
+
 /// By Bonferroni's bound.
-double testWhiteness(const VectorXd& residual, const std::vector<FeatureInfo>& infos) {
-  const std::map<int, std::vector<double>> samples = collectSamples(residual, infos);
+double testWhiteness(const std::map<int, std::vector<double>>& samples) {
   double smallest = 1.0;
   for (const auto& [lags, share] : kLagTests) {
     smallest = std::min(smallest, testWhiteness(samples, lags) / share);
@@ -98,7 +121,11 @@ ResidualTest testResidual(const VectorXd& residual, double degrees, const std::v
   // what is left of a measurement without noise is the integration's error: below a hundredth of the noise
   // it moves no parameter by more than a seventh of its standard deviation, were it the same in 200 samples
   constexpr double kNegligible = 1e-4;  // of chi-square
-  test.whiteness_p = residual.squaredNorm() < kNegligible * degrees ? 1.0 : testWhiteness(residual, infos);
+  if (!(residual.squaredNorm() < kNegligible * degrees)) {
+    const std::map<int, std::vector<double>> samples = collectSamples(residual, infos);
+    test.whiteness_p = testWhiteness(samples);
+    findDependence(samples, test);
+  }
   Index largest = 0;
   const double size = residual.cwiseAbs().maxCoeff(&largest);
   test.largest = static_cast<int>(largest);

@@ -13,6 +13,9 @@ struct ResidualTest {
   double whiteness_p = 1.0;   ///< of neighbours in time that agree as much (Ljung and Box 1978)
   double largest_p = 1.0;     ///< of a single residual as large
   int largest = -1;           ///< its feature
+  int output = -1;            ///< whose samples depend most on each other; -1 where too few have times
+  int lag = 0;                ///< of them, those so many samples apart
+  double correlation = 0.0;   ///< of their residuals
 
   /// That of the smallest of three, by Bonferroni's bound: below it in at most as many of the good
   /// measurements.

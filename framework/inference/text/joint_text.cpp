@@ -173,10 +173,10 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
       fmt::format("{}", fmt::join(listStatuses(inferred, static_cast<Index>(parameters.size())), ", "));
   std::string text = fmt::format("{} recordings together: {}\n", inferred.alone.size(), statuses);
   if (!inferred.agreement) {
-    return text + explainNotice(Notice::kNotSimulated, inferred.joint.message);
+    return fillCommands(text + explainNotice(Notice::kNotSimulated, inferred.joint.message), inferred.asked);
   }
   const std::string misfits = describeMisfits(inferred);
-  text += misfits + describeAgreement(inferred, parameters, !misfits.empty());
+  text += fillCommands(misfits + describeAgreement(inferred, parameters, !misfits.empty()), inferred.asked);
   if (isStated(inferred)) {
     text += makeEstimateTable(inferred, parameters);
   } else {

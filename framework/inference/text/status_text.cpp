@@ -21,6 +21,8 @@ using Eigen::Index;
 
 namespace {
 
+constexpr const char* kNoValuesFit = "no parameter values within the bounds fit";
+
 std::string listBeyondBounds(const InferredMeasurement& inferred, const Estimate& estimate,
                              const std::vector<ParameterSpec>& parameters) {
   if (inferred.posterior && inferred.posterior->fit && !inferred.posterior->fit->beyond.empty()) {
@@ -80,8 +82,35 @@ std::string describePValue(const Trust& trust) {
                                                  : fmt::format("p = {:.2g}", trust.p_value);
 }
 
+/// "x", of features named as x(0.1 s).
+std::string nameOutput(int output, const std::vector<FeatureInfo>& features) {
+  for (const FeatureInfo& feature : features) {
+    if (feature.output == output) {
+      return feature.name.substr(0, feature.name.find('('));
+    }
+  }
+  return "";
+}
+
+/// Of residuals that are not independent.
+std::string describeDependence(const ResidualTest& test, const std::vector<FeatureInfo>& features) {
+  const bool alike = test.correlation > 0.0;
+  const std::string name = nameOutput(test.output, features);
+  const std::string of = name.empty() ? "" : " of " + name;
+  if (test.lag > 1) {
+    return fmt::format(
+        "residuals{} that are {} samples apart {} (correlation {:.2f}): the noise swings, or the model lacks "
+        "something small",
+        of, test.lag, alike ? "are alike" : "are opposite", test.correlation);
+  }
+  return fmt::format("neighbouring residuals{} {} (correlation {:.2f}): {}", of,
+                     alike ? "are alike" : "alternate", test.correlation,
+                     alike ? "the noise is coloured, or the model lacks something small"
+                           : "the signal was differentiated, or noise.correlation states more than there is");
+}
+
 /// Where the simulator's best point leaves more than noise, or how much.
-std::string describeResidual(const SimulatorFit& fit) {
+std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureInfo>& features) {
   const ResidualTest& test = fit.test;
   const double largest = std::abs(fit.residual[test.largest]);
   const std::string& where = fit.largest_feature;
@@ -92,18 +121,17 @@ std::string describeResidual(const SimulatorFit& fit) {
   }
   constexpr double kGross = 10.0;  // noise is not stated so wrong, and neighbours of a misfit always agree
   if (fit.chi_square > kGross * fit.degrees) {
-    return fmt::format("the largest misfit is {:.3g} noise sd, in {}", largest, where);
+    return fmt::format("{}, the largest misfit is {:.3g} noise sd, in {}", kNoValuesFit, largest, where);
   }
   if (test.whiteness_p < test.chi_square_p) {
-    return "the residuals of neighbouring samples agree more than the stated noise allows: it is coloured, "
-           "or "
-           "the model lacks something small";
+    return describeDependence(test, features);
   }
   if (test.largest_p < test.chi_square_p) {
     return fmt::format("{} is {:.3g} noise sd off, more than any of {} samples of noise would be", where,
                        largest, fit.residual.size());
   }
-  return fmt::format("chi-square is {:.2g} times what the stated noise leaves", fit.chi_square / fit.degrees);
+  return fmt::format("{}, chi-square is {:.2g} times what the stated noise leaves", kNoValuesFit,
+                     fit.chi_square / fit.degrees);
 }
 
 /// How many times larger than stated the noise is, where the simulator's residuals look like noise; else 0.
@@ -127,13 +155,9 @@ std::string describeMissing(const InferredMeasurement& inferred) {
                           : "";
 }
 
-/// The names of a remedy as the user calls them.
-std::string nameFiles(std::string text, const InferredMeasurement& inferred) {
-  const std::string general = "RUN FILE";
-  const std::size_t at = text.find(general);
-  return inferred.run.empty() || at == std::string::npos
-             ? text
-             : text.replace(at, general.size(), inferred.run + " " + inferred.source);
+bool isMismatch(const std::optional<Trust>& trust) {
+  return trust && std::find(trust->statuses.begin(), trust->statuses.end(), TrustStatus::kModelMismatch) !=
+                      trust->statuses.end();
 }
 
 std::string explainMismatch(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
@@ -144,12 +168,16 @@ std::string explainMismatch(const InferredMeasurement& inferred, const std::vect
     return explainBriefly(
         Notice::kModelMismatch,
         fmt::format(
-            "the residuals look like noise {:.3g} times as large as stated: measure it (twinmap noise)",
+            "the residuals look like noise {:.3g} times as large as stated; measure it (twinmap noise)",
             factor));
   }
-  const std::string where = inferred.trust ? describeAnomaly(*inferred.trust, features)
-                                           : describeResidual(*inferred.posterior->fit);
-  return nameFiles(explainNotice(Notice::kModelMismatch, where + describeMissing(inferred)), inferred);
+  const std::string where =
+      isMismatch(inferred.trust)
+          ? fmt::format("{}, {}", kNoValuesFit, describeAnomaly(*inferred.trust, features))
+          : describeResidual(*inferred.posterior->fit, features);
+  const std::string happened = where + describeMissing(inferred);
+  return inferred.asked.diagnoses ? explainBriefly(Notice::kModelMismatch, happened)
+                                  : explainNotice(Notice::kModelMismatch, happened);
 }
 
 /// The samples that are left out, the first of them by name.
@@ -179,6 +207,20 @@ std::string explainClock(const InferredMeasurement& inferred) {
                         : ""));
 }
 
+/// "neighbouring samples have a correlation of 0.61", of the lag where it is largest.
+std::string describeColour(const Eigen::VectorXd& autoregression) {
+  constexpr Index kLags = 10;  // as many as the residual is tested over
+  const std::vector<double> coefficients(autoregression.begin(), autoregression.end());
+  const auto correlation = calcAutocorrelation(coefficients, kLags);
+  Index lag = 1;
+  for (Index k = 2; k <= kLags; ++k) {
+    lag = std::abs(correlation[k]) > std::abs(correlation[lag]) ? k : lag;
+  }
+  return fmt::format("{} have a correlation of {:.2f}",
+                     lag == 1 ? "neighbouring samples" : fmt::format("samples {} apart", lag),
+                     correlation[lag]);
+}
+
 /// Of each output whose noise is coloured, or has an offset.
 std::string explainNoise(const std::vector<NoiseReport>& noise, bool offsets) {
   constexpr int kDigits = 3;
@@ -191,10 +233,7 @@ std::string explainNoise(const std::vector<NoiseReport>& noise, bool offsets) {
                             toShortText(found.offset_stddev, kDigits) + unit);
     }
     if (!offsets && found.autoregression.size() > 0) {
-      text += explainNotice(
-          Notice::kNoiseColoured, report.output,
-          calcAutocorrelation(std::vector<double>(found.autoregression.begin(), found.autoregression.end()),
-                              1)[1]);
+      text += explainNotice(Notice::kNoiseColoured, report.output, describeColour(found.autoregression));
     }
   }
   return text;
@@ -299,7 +338,7 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
       text += dropRemedies(explained);
     }
   }
-  return text;
+  return fillCommands(std::move(text), inferred.asked);
 }
 
 std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features) {

@@ -13,6 +13,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/json/json.hpp"
+#include "framework/base/text/escape.hpp"
 #include "framework/study/sweep/sweep_folder.hpp"
 
 namespace twinmap {

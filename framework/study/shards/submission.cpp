@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "framework/base/files/atomic_file.hpp"
+#include "framework/base/text/escape.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/shards/shard_record.hpp"

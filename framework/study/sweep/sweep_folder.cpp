@@ -14,17 +14,6 @@ constexpr const char* kFailedCases = "failed_cases.csv";
 
 }  // namespace
 
-std::string quoteForShell(const std::string& text) {
-  if (text.find_first_of(" '\"\\$`!*?[]{}()<>|&;~#") == std::string::npos) {
-    return text;
-  }
-  std::string quoted = "'";
-  for (const char c : text) {
-    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return quoted + "'";
-}
-
 fs::path getCaseFolder(const fs::path& sweep, const SweepCase& sweep_case) {
   return sweep / "cases" / sweep_case.name;
 }

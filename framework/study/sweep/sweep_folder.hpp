@@ -23,9 +23,6 @@ std::vector<bool> findComplete(const std::filesystem::path& sweep, const std::ve
 /// "twinmap run .../resolved.yaml --out ... --store ...", as a shell takes it.
 std::string makeCaseCommand(const std::filesystem::path& case_folder, const std::filesystem::path& store);
 
-/// A word as a shell takes it.
-std::string quoteForShell(const std::string& text);
-
 /// DIR/failed_cases.csv: case, reason, command.
 void writeFailedCases(const std::filesystem::path& sweep, const std::vector<FailedCase>& failures);
 /// The names in it; none if there is no such file.

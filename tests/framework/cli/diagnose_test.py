@@ -62,7 +62,7 @@ class Diagnose(FolderTestCase):
             (["diagnose", file, soft], "which trial does it record"),
             (["diagnose", CART, *recordings[:2]], "has no trials"),
             (["diagnose", file, *recordings, "--page", page], own_file),
-            (["infer", file, *recordings, "--diagnose", "--page", page], "twinmap diagnose FILE --trial"),
+            (["infer", file, *recordings, "--diagnose", "--page", page], f"twinmap diagnose {file} --trial"),
             (["validate", file, *recordings, "--against", soft], own_file),
             (["select", file, CART, *recordings], own_file),
         ]:

@@ -1,5 +1,7 @@
 """Inference from an experiment file alone: no run, no map."""
 import json
+import re
+import shlex
 import unittest
 
 import numpy as np
@@ -320,7 +322,27 @@ class Direct(FolderTestCase):
         found = json.loads(self.infer(CART, wrong, "--json"))
         self.assertEqual(found["status"], "model_mismatch")
         self.assertLess(found["trust"]["p_value"], 1e-6)
-        self.assertIn("no parameter values within the bounds fit", self.infer(CART, wrong))
+        table = self.infer(CART, wrong, "--start", 0)
+        self.assertIn("no parameter values within the bounds fit, the largest misfit", table)
+        command = re.search(r"Ask what the model lacks: twinmap (diagnose .*)", table).group(1)
+        self.assertEqual(shlex.split(command), ["diagnose", str(CART), str(wrong), "--start", "0"])
+
+    def test_residuals_that_are_not_independent_are_called_so(self):
+        clean = self.folder / "clean.csv"
+        self.assertEqual(call("simulate", CART, "--csv", clean, *POINT).returncode, 0)
+        rows = read_csv(clean)
+        times, x = ([float(row[name]) for row in rows] for name in ("t", "x"))
+        unknown = self.folder / "unknown noise.yaml"
+        unknown.write_text(CART.read_text().replace("{x: 1e-4}", "{x: unknown}"))
+        for turn, words in ((2.0, "that are 3 samples apart are alike"), (2.9, "alternate (correlation -0.9")):
+            swinging = self.folder / "swinging.csv"
+            write_csv(swinging, ["t", "x"], [times, np.array(x) + 1.4e-4 * np.sin(turn * np.arange(len(x)))])
+            for experiment in (CART, unknown):
+                table = self.infer(experiment, swinging)
+                self.assertIn("model_mismatch: the model does not explain the measurement: ", table)
+                self.assertIn(words, table)
+                self.assertNotIn("within the bounds fit", table)  # chi-square is that of noise
+        self.assertIn(f"twinmap diagnose '{unknown}' {swinging}\n", table)
 
     def test_a_run_without_a_map_answers_as_its_file(self):
         run = self.folder / "run"

@@ -90,6 +90,7 @@ class Joint(FolderTestCase):
         table = self.infer(self.experiment, self.a, self.other, "--joint")
         self.assertIn("recordings disagree (p < 0.0005)", table)
         self.assertRegex(table, r"a.csv contradicts .*other.csv in k by [0-9.]+ sd")
+        self.assertIn(f"twinmap diagnose {self.experiment} {self.a} {self.other}\n", table)
 
     def test_windows_of_a_record_are_recordings(self):
         found = json.loads(self.infer(self.experiment, self.long, "--windows", "1.5", "--json"))

@@ -97,7 +97,7 @@ class ProgressTest(OwnFolderTestCase):
             self.assertEqual(result.stderr, "")
 
     def test_a_stage_of_a_run_is_named_before_it_ends(self):
-        file, _ = self.write_slow(0.01)
+        file, _ = self.write_slow(0.05)  # s a simulation: 60 points take more than two intervals of the log's lines
         small = ["design.train.samples=60", "design.test.samples=60", "inverse_map=surrogate"]
         process = self.start("run", file, *small, "--out", self.folder / "run", "--threads", 1)
         _, errors = process.communicate(timeout=300)

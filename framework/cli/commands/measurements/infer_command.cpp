@@ -63,7 +63,8 @@ class InferCommand {
       : source_(arguments.run),
         session_(source_.makeSession(makeSessionOptions(arguments))),
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
-        run_(arguments.run),
+        asked_{arguments.run, {}, {}, arguments.known},
+        is_stream_(arguments.follow),
         names_missing_(!arguments.follow && !arguments.csv),
         diagnoses_(arguments.diagnose),
         printer_(chooseFormat(arguments), getModel().parameters, session_->refines(),
@@ -121,7 +122,7 @@ class InferCommand {
       try {
         WaitingLine waiting("infer " + nameWindow(table.source, start));
         InferredMeasurement inferred = session_->infer(table, start, known_);
-        inferred.run = run_;
+        inferred.asked = describeAsked(table.source, start);
         std::optional<RecordedFeatures> recording;
         if (names_missing_ && source_.getReader().findReduction() == nullptr && inferred.fault.empty() &&
             (isMismatch(selectEstimate(inferred).statuses) || !inferred.clock_faults.empty())) {
@@ -129,6 +130,7 @@ class InferCommand {
           recording = readRecording(source_.getReader(), table, start, known_);
           inferred.missing = findMissingTerm(source_.getExperiment(), *recording, inferred);
         }
+        inferred.asked.diagnoses = diagnoses_ && recording;
         waiting.clear();
         print(inferred, diagnoses_ && recording ? &*recording : nullptr);
         ++count_;
@@ -136,6 +138,17 @@ class InferCommand {
         reportError(table.source, source_.getReader().getStatedStart(start), error.what());
       }
     }
+  }
+
+  Asked describeAsked(const std::string& source, const std::optional<double>& start) const {
+    Asked asked = asked_;
+    if (!is_stream_) {
+      asked.files = {source};
+    }
+    if (start) {
+      asked.starts = {*start};
+    }
+    return asked;
   }
 
   void printCourses() const {
@@ -193,8 +206,8 @@ class InferCommand {
   const InferenceSource source_;
   const std::unique_ptr<MeasurementInference> session_;
   const Eigen::VectorXd known_;
-  const std::string run_;
-  const bool names_missing_, diagnoses_;
+  const Asked asked_;  // of each file
+  const bool is_stream_, names_missing_, diagnoses_;
   const InferredPrinter printer_;
   InferHistory history_;
   const std::string page_;

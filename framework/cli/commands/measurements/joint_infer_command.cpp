@@ -38,15 +38,30 @@ std::vector<RecordedTable> readTables(const InferArguments& arguments, const Joi
   return tables;
 }
 
+Asked describeAsked(const InferArguments& arguments) {
+  return {arguments.run, arguments.files, arguments.trials, arguments.known, arguments.starts};
+}
+
+/// With the windows, if they are of one file: others may be shorter.
+Asked describeAsked(const InferArguments& arguments, const std::vector<Recording>& recordings) {
+  Asked asked = describeAsked(arguments);
+  if (arguments.windows && arguments.files.size() + arguments.trials.size() == 1) {
+    asked.starts.clear();
+    for (const Recording& one : recordings) {
+      asked.starts.push_back(*one.start);
+    }
+  }
+  return asked;
+}
+
 void requireJointArguments(const InferArguments& arguments) {
   if (arguments.follow) {
     throw ExperimentError(
         "--follow infers one measurement after another; leave --joint, --trial and --windows out");
   }
   if (arguments.diagnose) {
-    throw ExperimentError(
-        "--diagnose is of one measurement; of several: twinmap diagnose FILE --trial NAME=RECORDING ... or "
-        "RECORDING ...");
+    throw ExperimentError("--diagnose is of one measurement; of several: twinmap diagnose " +
+                          listArguments(describeAsked(arguments)));
   }
   if (!arguments.page.empty()) {
     throw ExperimentError(
@@ -65,8 +80,10 @@ std::optional<int> findDraws(const InferArguments& arguments) {
 void inferTrial(const InferArguments& arguments, const MeasurementReader& reader,
                 const Recording& recording) {
   DirectInference session(reader, findDraws(arguments).value_or(SimulatorPosteriorOptions{}.draws));
-  printInferred(arguments, session.infer(*recording.table, recording.start, readKnown(arguments, reader)),
-                reader, session);
+  InferredMeasurement inferred =
+      session.infer(*recording.table, recording.start, readKnown(arguments, reader));
+  inferred.asked = describeAsked(arguments);
+  printInferred(arguments, inferred, reader, session);
 }
 
 }  // namespace
@@ -95,7 +112,8 @@ void inferJointly(const InferArguments& arguments) {
         "one recording alone is not inferred jointly; give several files, starts or windows");
   }
   WaitingLine waiting(fmt::format("infer from {} recordings", recordings.get().size()));
-  const JointInference inferred = inferrer.infer(recordings.get());
+  JointInference inferred = inferrer.infer(recordings.get());
+  inferred.asked = describeAsked(arguments, recordings.get());
   waiting.clear();
   if (arguments.json) {
     std::cout << makeJointJson(inferred, inferrer.getParameters()) << "\n";

@@ -53,10 +53,20 @@ Replay replayMeasurement(const Inferrer& inferrer, const ReplayOptions& options)
   }
 }
 
+/// Of the measurement that parameters are inferred from.
+Asked describeAsked(const ReplayArguments& arguments) {
+  const bool same = arguments.from.empty();
+  const std::optional<double>& start = same ? arguments.start : arguments.from_start;
+  Asked asked{arguments.run, {same ? arguments.file : arguments.from}, {}, arguments.known};
+  if (start) {
+    asked.starts.push_back(*start);
+  }
+  return asked;
+}
+
 /// Says what the model most likely lacks, where it does not fit.
-void nameMissing(const std::string& run, const Inferrer& inferrer, Replay& replay) {
+void nameMissing(const Inferrer& inferrer, Replay& replay) {
   InferredMeasurement& inferred = replay.inferred;
-  inferred.run = run;
   if (inferred.fault.empty() && isMismatch(selectEstimate(inferred).statuses)) {
     const MeasurementReader& reader = inferrer.getReader();
     const MeasuredWindow& from = replay.options.from;
@@ -72,7 +82,8 @@ void replay(const ReplayArguments& arguments) {
   WaitingLine waiting("replay " + nameWindow(arguments.file, arguments.start));
   const Inferrer inferrer(arguments.run);
   Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer));
-  nameMissing(arguments.run, inferrer, replay);
+  replay.inferred.asked = describeAsked(arguments);
+  nameMissing(inferrer, replay);
   const fs::path folder = chooseFolder(arguments);
   writeReplay(folder, inferrer, replay);
   waiting.clear();

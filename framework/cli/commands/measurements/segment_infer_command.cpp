@@ -58,7 +58,11 @@ void inferInSegments(const InferArguments& arguments) {
     const Table table = readTable(file, inference.listColumns(), MissingCells::kKeep);
     for (const std::optional<double>& start : starts) {
       WaitingLine waiting("infer " + nameWindow(file, start) + " in segments");
-      const InferredMeasurement inferred = inference.infer(table, start);
+      InferredMeasurement inferred = inference.infer(table, start);
+      inferred.asked = {arguments.run, {file}, {}, arguments.known};
+      if (start) {
+        inferred.asked.starts.push_back(*start);
+      }
       waiting.clear();
       printer.print(inferred, inferred.segments->samples, is_first);
       is_first = false;

@@ -85,7 +85,7 @@ bool inferTrialsByRun(const InferArguments& arguments) {
   InferredMeasurement inferred = session->infer(*features, readKnown(arguments, source.getReader()));
   waiting.clear();
   inferred.source = names;
-  inferred.run = arguments.run;
+  inferred.asked = {arguments.run, {}, arguments.trials, arguments.known, arguments.starts};
   printInferred(arguments, inferred, source.getReader(), *session);
   return true;
 }

@@ -55,6 +55,25 @@ TEST(ResidualTest, FindsErrorsThatDependOnTheOnesBefore) {
             0.95);
 }
 
+TEST(ResidualTest, NamesTheOutputAndLagOfWhatDependsMost) {
+  VectorXd residual = drawNoise(1);
+  for (Index i = 2; i < kSamples; i += 2) {
+    residual[i] = -0.8 * residual[i - 2] + 0.6 * residual[i];
+  }
+  ResidualTest test = testResidual(residual, kSamples, makeInfos());
+  EXPECT_EQ(test.output, 0);
+  EXPECT_EQ(test.lag, 1);
+  EXPECT_NEAR(test.correlation, -0.8, 3.0 * 0.6 / 10.0);  // sd of an estimate from 100 samples: .6 / 10
+  residual = drawNoise(2);
+  for (Index i = 7; i < kSamples; i += 2) {
+    residual[i] = 0.8 * residual[i - 6] + 0.6 * residual[i];
+  }
+  test = testResidual(residual, kSamples, makeInfos());
+  EXPECT_EQ(test.output, 1);
+  EXPECT_EQ(test.lag, 3);
+  EXPECT_NEAR(test.correlation, 0.8, 3.0 * 0.6 / 10.0);
+}
+
 TEST(ResidualTest, MindsNoColourOfWhatIsFarBelowTheNoise) {
   const VectorXd drift = VectorXd::LinSpaced(kSamples, -1.0, 1.0);
   EXPECT_GT(testResidual(1e-3 * drift, kSamples, makeInfos()).calcPValue(), 0.99);
