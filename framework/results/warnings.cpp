@@ -219,6 +219,16 @@ void appendTraining(const RunSummary& run, std::vector<Warning>& warnings) {
   }
 }
 
+/// Of estimates that are refined, what it advises has been done.
+void dropRefinement(std::vector<Warning>& warnings) {
+  for (Warning& warning : warnings) {
+    const std::size_t remedy = warning.text.find("\n  Refine the estimates");
+    if (remedy != std::string::npos) {
+      warning.text = warning.text.substr(0, remedy) + "\n  Nothing need be done: the estimates are refined.";
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> collectWarnings(const RunSummary& run) {
@@ -233,6 +243,9 @@ std::vector<std::string> collectWarnings(const RunSummary& run) {
   appendTraining(run, warnings);
   appendGain(run, warnings);
   appendRelativeToRange(run, warnings);
+  if (areRefined(run)) {
+    dropRefinement(warnings);
+  }
   return listTexts(std::move(warnings));
 }
 

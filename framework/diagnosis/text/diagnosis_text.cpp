@@ -74,12 +74,38 @@ std::string makeProcessText(const std::string& what, const Remainder& remainder,
   return "  " + what + (rows.empty() ? "\n" : with + alignRows(rows, 2, "  "));
 }
 
+/// Why no candidate was found.
+std::string describeNone(const DiagnosisStep& step, double level) {
+  const TermFinding& best = step.ranked.front();
+  if (!(best.p_value < level)) {
+    return fmt::format(
+        "None of {} candidates found (|z| above {:.2f} would be, by chance in {:g} % of models)", step.tested,
+        calcCriticalZ(level, step.tested), 100.0 * level);
+  }
+  const char* reason = !best.fitted ? "no fit with it succeeded"
+                       : best.log_evidence > 0.0
+                           ? "not out of what remains with it, which is not noise either"
+                           : "a fit with it explains no more than its freedom would of noise";
+  return fmt::format("None of {} candidates found: {} stands out (z {:+.1f}), but {}", step.tested,
+                     best.candidate.term, best.z, reason);
+}
+
 }  // namespace
 
 std::string describeFit(const ExplainedFit& fit) {
   return fmt::format("chi-square {} of {:.0f} degrees of freedom, {}",
                      toShortText(fit.posterior.chi_square, kFigureDigits), fit.posterior.degrees,
                      fit.isExplained() ? "explained by the noise" : "model_mismatch");
+}
+
+std::string describeBefore(const Diagnosis& diagnosis) {
+  const SimulatorPosterior& before = diagnosis.before.posterior;
+  return diagnosis.found > 0 && diagnosis.before.isExplained()
+             ? fmt::format(
+                   "chi-square {} of {:.0f} degrees of freedom, within the noise by its size, but a "
+                   "missing term stands out",
+                   toShortText(before.chi_square, kFigureDigits), before.degrees)
+             : describeFit(diagnosis.before);
 }
 
 std::string describeNoise(const Diagnosis& diagnosis) {
@@ -180,17 +206,14 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number, double l
       text += fmt::format("  These recordings do not tell them apart; {}.\n", step.advice);
     }
   } else {
-    text =
-        fmt::format("{} of {} candidates found (|z| above {:.2f} would be, by chance in {:g} % of models)\n",
-                    best.p_value < level ? "None that stands out of what remains" : "None", step.tested,
-                    calcCriticalZ(level, step.tested), 100.0 * level);
+    text = describeNone(step, level) + "\n";
   }
   return text;
 }
 
 std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& source) {
   const std::vector<ParameterSpec>& parameters = diagnosis.corrected.model.parameters;
-  std::string text = fmt::format("{}: {}\n", source, describeFit(diagnosis.before));
+  std::string text = fmt::format("{}: {}\n", source, describeBefore(diagnosis));
   for (const std::string& line : {describeNoise(diagnosis), describeBounds(diagnosis)}) {
     text += line.empty() ? "" : line + "\n";
   }

@@ -11,6 +11,9 @@ namespace twinmap {
 /// "chi-square 210 of 197 degrees of freedom, explained by the noise".
 std::string describeFit(const ExplainedFit& fit);
 
+/// The same of the model before any term, which noise may explain though a term stands out.
+std::string describeBefore(const Diagnosis& diagnosis);
+
 /// "Noise as the residual has it: sd 0.0002 (x)", of outputs whose noise is unknown; "" without such.
 std::string describeNoise(const Diagnosis& diagnosis);
 

@@ -41,18 +41,29 @@ SurrogateSamples takeFirst(const SurrogateSamples& samples) {
   return first;
 }
 
+/// By how much the sd that suffers most was enlarged.
+const char* adviseOnRescaled(double largest) {
+  constexpr double kMuch = 2.0;  // as good as three quarters of the measurement lost
+  return largest < kMuch
+             ? "Nothing need be done; the run's test samples say whether the enlarged intervals hold."
+             : "Refine the estimates on the simulator: refine=always.";
+}
+
 std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateValidation& validation) {
   constexpr double kCalibrated = 0.9;
   std::vector<std::string> warnings, told;
+  double largest = 1.0;
   for (Index k = 0; k < validation.coverage95.size(); ++k) {
     if (validation.coverage95(k) < kCalibrated) {
+      largest = std::max(largest, validation.stddev_scale(k));
       told.push_back(fmt::format("{} ({:.0f} % contained, sd enlarged by {:.2f})",
                                  model.parameters[static_cast<std::size_t>(k)].name.text,
                                  100.0 * validation.coverage95(k), validation.stddev_scale(k)));
     }
   }
   if (!told.empty()) {
-    warnings.push_back(describeNotice(Notice::kSurrogateRescaled, listNames(told)));
+    warnings.push_back(
+        describeNotice(Notice::kSurrogateRescaled, listNames(told), adviseOnRescaled(largest)));
   }
   if (validation.status == SurrogateStatus::kEstimatorLimited) {
     warnings.push_back(describeNotice(Notice::kSurrogateUncalibrated));

@@ -12,6 +12,7 @@ struct Asked {
   std::vector<std::string> trials{};  ///< "NAME=FILE" instead
   std::vector<std::string> known{};   ///< "NAME=VALUE" of the inputs
   std::vector<double> starts{};       ///< times in each file that are 0 of the model; empty: the experiment's
+  int draws = 0;                      ///< of the posterior; 0: the default
   bool diagnoses = false;             ///< whether the table of what the model lacks follows
 };
 

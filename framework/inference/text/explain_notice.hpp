@@ -6,6 +6,7 @@
 #include <string>
 
 #include "framework/base/log/notice.hpp"
+#include "framework/inference/text/asked.hpp"
 
 namespace twinmap {
 
@@ -23,6 +24,15 @@ template <class... Arguments>
 std::string explainBriefly(Notice notice, const Arguments&... arguments) {
   const std::string text = describeNotice(notice, arguments...);
   return fmt::format("  {}: {}\n", getNotice(notice).name, text.substr(0, text.find('\n')));
+}
+
+/// Why a posterior is not reliable. More draws are not advised where they were taken.
+inline std::string explainUnreliable(const std::string& why, const Asked& asked) {
+  constexpr int kMany = 4000;  // as the notice advises
+  return asked.draws < kMany
+             ? explainNotice(Notice::kUnreliable, why)
+             : explainBriefly(Notice::kUnreliable, why) +
+                   "    Narrow the bounds, or measure another output; more draws would hardly help.\n";
 }
 
 }  // namespace twinmap

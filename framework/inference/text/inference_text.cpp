@@ -121,13 +121,14 @@ std::string describeSearches(const PosteriorEstimate& posterior) {
 /// The simulator's: how it was found, or why it is not the estimate. The surrogate's: its own table.
 std::string describePosterior(const PosteriorEstimate& posterior,
                               const std::vector<ParameterSpec>& parameters,
-                              const DerivedQuantities* quantities, bool is_refined, bool misfits) {
+                              const DerivedQuantities* quantities, bool is_refined, bool misfits,
+                              const Asked& asked) {
   const std::string diagnostics = describeDiagnostics(posterior);
   if (!posterior.isReliable() && posterior.fit) {
     const std::string why = posterior.message + " (" + diagnostics + ")";
     return !posterior.fit->isSimulated() ? ""  // not_simulated says it
            : misfits                     ? explainBriefly(Notice::kUnreliable, why)
-                                         : explainNotice(Notice::kUnreliable, why);
+                                         : explainUnreliable(why, asked);
   }
   if (!posterior.isReliable()) {
     return fmt::format("  no posterior: {} ({})\n", posterior.message, diagnostics);
@@ -209,7 +210,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   }
   if (inferred.posterior) {
     text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined(),
-                              isMismatch(estimate.statuses));
+                              isMismatch(estimate.statuses), inferred.asked);
   }
   return text;
 }

@@ -180,7 +180,7 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
   if (isStated(inferred)) {
     text += makeEstimateTable(inferred, parameters);
   } else {
-    text += explainNotice(Notice::kUnreliable, inferred.joint.message);
+    text += explainUnreliable(inferred.joint.message, inferred.asked);
   }
   return text + makeAloneTable(inferred, parameters) +
          fmt::format("  sampled on the simulator: {} simulations\n", inferred.simulations);

@@ -239,6 +239,16 @@ std::string explainNoise(const std::vector<NoiseReport>& noise, bool offsets) {
   return text;
 }
 
+/// The posterior is not advised that is there already.
+std::string explainUncalibrated(const InferredMeasurement& inferred) {
+  if (!inferred.posterior) {
+    return explainNotice(Notice::kUncalibrated);
+  }
+  const std::string other =
+      inferred.posterior->fit ? "" : "    Sample the simulator's posterior: --posterior-from simulator.\n";
+  return explainBriefly(Notice::kUncalibrated) + other;
+}
+
 /// "" of those that are explained with the numbers they concern: makeInferenceTable().
 std::string explainStatus(const std::string& status, const InferredMeasurement& inferred,
                           const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
@@ -271,7 +281,7 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
     return explainNoise(inferred.posterior->fit->noise, is(Notice::kSensorOffset));
   }
   if (is(Notice::kUncalibrated)) {
-    return explainNotice(Notice::kUncalibrated);
+    return explainUncalibrated(inferred);
   }
   if (is(Notice::kPosteriorUncalibrated)) {
     return explainNotice(Notice::kPosteriorUncalibrated, inferred.posterior->doubt);

@@ -56,7 +56,7 @@ Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment
                     const std::vector<std::string>& names) {
   Section section{"verdict", "Verdict", "", {}};
   section.html += makeParagraph(describeMissing(diagnosis), "class=\"lead\"");
-  section.html += makeParagraph("The model: " + describeFit(diagnosis.before) + ".");
+  section.html += makeParagraph("The model: " + describeBefore(diagnosis) + ".");
   if (diagnosis.found > 0) {
     section.html += makeParagraph("With what is missing: " + describeFit(diagnosis.after) + ".");
   }

@@ -29,6 +29,43 @@ std::set<std::string> nameTerms(const Diagnosis& diagnosis) {
   return {names.begin(), names.end()};
 }
 
+DiagnosisStep makeStep(double p_value, bool fitted, double log_evidence) {
+  TermFinding finding;
+  finding.candidate.term = "drag.x";
+  finding.z = 15.2;
+  finding.p_value = p_value;
+  finding.fitted = fitted;
+  finding.log_evidence = log_evidence;
+  DiagnosisStep step;
+  step.tested = 99;
+  step.ranked = {finding};
+  return step;
+}
+
+TEST(Diagnosis, SaysWhichRuleTookATermOutThatStandsOut) {
+  const std::string found = "None of 99 candidates found: drag.x stands out (z +15.2), but ";
+  const auto says = [](const DiagnosisStep& step) { return describeStep(step, 1, 0.01); };
+  EXPECT_EQ(says(makeStep(1e-9, false, -INFINITY)), found + "no fit with it succeeded\n");
+  EXPECT_EQ(says(makeStep(1e-9, true, -2.0)),
+            found + "a fit with it explains no more than its freedom would of noise\n");
+  EXPECT_EQ(says(makeStep(1e-9, true, 7.0)),
+            found + "not out of what remains with it, which is not noise either\n");
+  EXPECT_NE(says(makeStep(0.3, false, 1.0)).find("found (|z| above "), std::string::npos);
+}
+
+TEST(Diagnosis, DoesNotCallAModelExplainedThatLacksWhatStandsOut) {
+  Diagnosis diagnosis;
+  diagnosis.before.posterior.chi_square = 2116;
+  diagnosis.before.posterior.degrees = 1987;
+  EXPECT_EQ(describeBefore(diagnosis), describeFit(diagnosis.before));
+  diagnosis.found = 1;
+  EXPECT_EQ(describeBefore(diagnosis),
+            "chi-square 2116 of 1987 degrees of freedom, within the noise by its size, but a missing term "
+            "stands out");
+  diagnosis.before.test.chi_square_p = 0.0;
+  EXPECT_EQ(describeBefore(diagnosis), "chi-square 2116 of 1987 degrees of freedom, model_mismatch");
+}
+
 TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {
   const Diagnosis diagnosis = diagnoseCart({measureCart(kSound)});
   EXPECT_EQ(diagnosis.found, 0U);

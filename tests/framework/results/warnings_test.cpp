@@ -48,6 +48,24 @@ TEST(Warnings, CoverageWithinThreeStandardErrorsIsChance) {
   EXPECT_EQ(collectWarnings(run).size(), 1U);
 }
 
+// What has been done is not advised.
+TEST(Warnings, OfRefinedEstimatesDoNotAdviseToRefine) {
+  RunSummary run = makeGoodRun();
+  const std::string happened = "cross-validation: sds were enlarged";
+  run.notes.warnings = {
+      {Severity::kInfo, happened + "\n  Refine the estimates on the simulator: refine=always."},
+      {Severity::kInfo, "calibration\n  Refine the estimates: refine=always."},
+      {Severity::kInfo, "other\n  Look at it."}};
+  EXPECT_EQ(collectWarnings(run)[0], run.notes.warnings[0].text);
+  MethodSummary refined;
+  refined.method = "refined";
+  refined.samples = refined.accepted = kSamples;
+  run.evaluation.methods = {refined};
+  const std::string done = "\n  Nothing need be done: the estimates are refined.";
+  EXPECT_EQ(collectWarnings(run),
+            (std::vector<std::string>{happened + done, "calibration" + done, "other\n  Look at it."}));
+}
+
 TEST(Warnings, TellWhereMoreSimulationsHardlyHelpAMapFarFromTheLimit) {
   RunSummary run = makeGoodRun();
   CrossValidation& found = run.training.cross_validation.emplace();

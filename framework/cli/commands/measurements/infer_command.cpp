@@ -63,7 +63,7 @@ class InferCommand {
       : source_(arguments.run),
         session_(source_.makeSession(makeSessionOptions(arguments))),
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
-        asked_{arguments.run, {}, {}, arguments.known},
+        asked_{arguments.run, {}, {}, arguments.known, {}, arguments.posterior_draws},
         is_stream_(arguments.follow),
         names_missing_(!arguments.follow && !arguments.csv),
         diagnoses_(arguments.diagnose),

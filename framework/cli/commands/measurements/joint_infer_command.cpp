@@ -39,7 +39,8 @@ std::vector<RecordedTable> readTables(const InferArguments& arguments, const Joi
 }
 
 Asked describeAsked(const InferArguments& arguments) {
-  return {arguments.run, arguments.files, arguments.trials, arguments.known, arguments.starts};
+  return {arguments.run,   arguments.files,  arguments.trials,
+          arguments.known, arguments.starts, arguments.posterior_draws};
 }
 
 /// With the windows, if they are of one file: others may be shorter.

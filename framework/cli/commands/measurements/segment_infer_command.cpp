@@ -59,7 +59,7 @@ void inferInSegments(const InferArguments& arguments) {
     for (const std::optional<double>& start : starts) {
       WaitingLine waiting("infer " + nameWindow(file, start) + " in segments");
       InferredMeasurement inferred = inference.infer(table, start);
-      inferred.asked = {arguments.run, {file}, {}, arguments.known};
+      inferred.asked = {arguments.run, {file}, {}, arguments.known, {}, draws};
       if (start) {
         inferred.asked.starts.push_back(*start);
       }

@@ -85,7 +85,8 @@ bool inferTrialsByRun(const InferArguments& arguments) {
   InferredMeasurement inferred = session->infer(*features, readKnown(arguments, source.getReader()));
   waiting.clear();
   inferred.source = names;
-  inferred.asked = {arguments.run, {}, arguments.trials, arguments.known, arguments.starts};
+  inferred.asked = {
+      arguments.run, {}, arguments.trials, arguments.known, arguments.starts, arguments.posterior_draws};
   printInferred(arguments, inferred, source.getReader(), *session);
   return true;
 }
