@@ -4,6 +4,7 @@
 #include <set>
 
 #include "framework/experiment/fields/write_value.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {
