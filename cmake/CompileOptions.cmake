@@ -51,9 +51,6 @@ if(TWINMAP_SANITIZE)
                       -fno-omit-frame-pointer -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${TWINMAP_SANITIZE})
 endif()
-if(TWINMAP_FUZZ)
-  add_compile_options(-fsanitize=fuzzer-no-link) # counts what was reached
-endif()
 
 # ccache hashes the precompiled header for each unit: a unit of 2.1 s of a processor takes 3.3 s the first time, 0.9 s again.
 option(TWINMAP_CCACHE "Keep objects for other builds (ccache); a build from nothing takes half as long again" OFF)
