@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "framework/analysis/metrics.hpp"
+#include "framework/estimation/estimate.hpp"
+#include "framework/experiment/model/model_spec.hpp"
+#include "framework/experiment/parameter_figures.hpp"
 
 namespace twinmap {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/diagnosis/diagnosis.hpp"
+#include "framework/diagnosis/diagnosis_step.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 
 namespace twinmap {

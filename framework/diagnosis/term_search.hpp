@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/diagnosis/diagnosis.hpp"
+#include "framework/diagnosis/diagnosis_step.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/diagnosis/term_sets.hpp"
 

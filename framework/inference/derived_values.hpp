@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/inference/inferrer.hpp"
+#include "framework/estimation/derived/derived_quantities.hpp"
+#include "framework/experiment/experiment_spec.hpp"
 
 namespace twinmap {
 

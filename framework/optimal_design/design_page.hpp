@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/optimal_design/excitation.hpp"
+#include "framework/optimal_design/excitation_design.hpp"
 
 namespace twinmap::experiment_design {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "framework/optimal_design/excitation.hpp"
+#include "framework/optimal_design/excitation_design.hpp"
 
 namespace twinmap::experiment_design {
 

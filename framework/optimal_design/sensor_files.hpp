@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "framework/optimal_design/sensors.hpp"
+#include "framework/experiment/yaml/yaml_node.hpp"
+#include "framework/optimal_design/sensor_design.hpp"
 
 namespace twinmap::experiment_design {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/optimal_design/sensors.hpp"
+#include "framework/optimal_design/sensor_design.hpp"
 
 namespace twinmap::experiment_design {
 

@@ -5,7 +5,7 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/report/sections/sections.hpp"
 
 namespace twinmap {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/resolve_defaults.hpp"
 #include "framework/store/predictions_file.hpp"

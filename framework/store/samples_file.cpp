@@ -2,7 +2,6 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/hdf5/hdf5_file.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/store/parameters_group.hpp"
 

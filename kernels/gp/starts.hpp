@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "kernels/gp/optimizer.hpp"
-#include "kernels/gp/training.hpp"
+#include "kernels/gp/training_options.hpp"
+#include "kernels/gp/training_set.hpp"
 
 namespace twinmap::gp {
 

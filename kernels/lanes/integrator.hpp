@@ -5,6 +5,7 @@
 
 #include "kernels/lanes/problem.hpp"
 #include "kernels/lanes/sample.hpp"
+#include "kernels/lanes/sample_stream.hpp"
 #include "kernels/lanes/step_engine.hpp"
 
 namespace twinmap::lanes {
@@ -17,17 +18,6 @@ const StepEngine& chooseEngine(int samples);
 const StepEngine& chooseEngine(int samples, const Problem& problem);
 /// All engines of this processor.
 std::vector<const StepEngine*> getEngines();
-
-/// Where samples come from and results go. An integrator calls its stream from its own thread; a stream
-/// shared by several has to be safe for that.
-class SampleStream {
- public:
-  virtual ~SampleStream() = default;
-
-  /// Fills in the next sample, or returns false: there is none left.
-  virtual bool next(Sample& sample) = 0;
-  virtual void finish(const Sample& sample, const Result& result) = 0;
-};
 
 class LanePacket;
 

@@ -6,10 +6,12 @@
 
 #include "kernels/lanes/event_bracket.hpp"
 #include "kernels/lanes/event_programs.hpp"
-#include "kernels/lanes/integrator.hpp"
 #include "kernels/lanes/lane.hpp"
+#include "kernels/lanes/problem.hpp"
 #include "kernels/lanes/program/aligned_buffer.hpp"
+#include "kernels/lanes/sample_stream.hpp"
 #include "kernels/lanes/state_projection.hpp"
+#include "kernels/lanes/step_engine.hpp"
 
 namespace twinmap::lanes {
 

@@ -11,7 +11,6 @@
 #include <fstream>
 
 #include "framework/base/worker/process_guard.hpp"
-#include "framework/base/worker/start_program.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,22 +3,13 @@
 #include <sys/types.h>
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "framework/base/worker/deadline.hpp"
 #include "framework/base/worker/output_tail.hpp"
+#include "framework/base/worker/start_program.hpp"
 #include "framework/base/worker/worker_process.hpp"
 
 namespace twinmap {
-
-/// How a program is started.
-struct ProgramStart {
-  std::vector<std::string> command;  ///< the program, searched in PATH, and its arguments
-  std::string folder;                ///< where it runs; "": here
-  std::vector<std::pair<std::string, std::string>> environment{};  ///< beside this process's own
-  double memory = 0.0;                                             ///< GiB of address space; 0: no limit
-};
 
 /// A program that answers lines of text on its standard output to lines on its standard input. It has a
 /// process group of its own, which ends with this value, or with this process in whatever way that ends. What

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "framework/base/worker/process_guard.hpp"
+#include "framework/base/worker/worker_process.hpp"
 
 namespace twinmap {
 namespace {

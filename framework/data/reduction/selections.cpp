@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "framework/data/reduction/mutual_information.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/candidates/observed_motion.hpp"
-#include "framework/diagnosis/candidates/term_candidates.hpp"
+#include "framework/diagnosis/candidates/replace_name.hpp"
 #include "framework/experiment/expression/named_values.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/diagnosis/candidates/replace_name.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 

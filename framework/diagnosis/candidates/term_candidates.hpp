@@ -66,8 +66,4 @@ std::string findInitial(const std::vector<NamedExpression>& initial, const std::
 /// Multiplies every signal, wherever forces use it.
 void scaleSignals(ModelSpec& model, double factor);
 
-/// Replaces a name of an expression, wherever it stands as a whole word: "x - x0", "x" by "(2*x)" is
-/// "(2*x) - x0".
-std::string replaceName(const std::string& text, const std::string& name, const std::string& replacement);
-
 }  // namespace twinmap

@@ -1,13 +1,8 @@
 #pragma once
 
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "framework/data/features/noise_covariance.hpp"
 #include "framework/data/reduction/feature_transform.hpp"
-#include "framework/estimation/network/fit_network.hpp"
-#include "framework/estimation/network/network_map.hpp"
+#include "framework/estimation/network/network_map_training.hpp"
 #include "framework/estimation/network/surrogate_pool.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
@@ -18,16 +13,6 @@ struct NetworkTask {
   const ModelSpec& model;
   const NetworkMapSpec& spec;
   std::uint64_t seed = 0;
-};
-
-/// A trained network and what a person should know about it.
-struct NetworkMapTraining {
-  NetworkMap map;
-  Estimates held_out;              ///< p x n draws, of samples that the network predicting them had not seen
-  Eigen::MatrixXd held_out_truth;  ///< p x n draws
-  int held_out_draws = 1;          ///< column j + i n is draw i of sample j
-  std::optional<WeightChains> chains{};  ///< where weights were sampled
-  std::vector<std::string> warnings;
 };
 
 /// Simulations that a network learns from.

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/estimation/network/train_network_map.hpp"
+#include "framework/estimation/network/network_map_training.hpp"
+#include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
 

@@ -17,18 +17,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of chi-square, between the best basin and others: for the same volume they bear a share of 4e-6.
-constexpr double kBasinAbove = 25.0;
-
 /// Of the searches, that end in the best basin where noise does not explain it: half of the scouts, which are
 /// few; of all batches any, as the count of confirmations says enough.
 constexpr double kSettledScouts = 0.5, kSettledBatches = 0.0;
-
-/// In standard deviations of the basin.
-double calcDistance(const Basin& basin, const VectorXd& at) {
-  const VectorXd apart = at - basin.local.at;
-  return std::sqrt(apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)));
-}
 
 bool isExplained(const std::vector<Basin>& basins) {
   return !basins.empty() &&
@@ -309,42 +300,10 @@ MatrixXd makeStarts(Index dimensions, std::uint64_t seed, int count) {
   return 2.0 * unit.array() - 1.0;
 }
 
-bool liesIn(const Basin& basin, const VectorXd& at) {
-  return calcDistance(basin, at) < kBasinReach;
-}
-
 bool hasArrived(const Basin& basin) {
   const LocalSurface& local = basin.local;
   const double scale = std::max(1.0, local.chi_square / local.degrees);  // as if noise were the residual
   return calcGainLeft(local) <= scale * choosePace(local.at.size()).converged;
-}
-
-MatrixXd calcBasinCovariance(const MatrixXd& information) {
-  const Index u = information.rows();
-  return linalg::solveCholesky(
-      linalg::calcCholesky(information + kHalfWidthInformation * MatrixXd::Identity(u, u)).lower,
-      MatrixXd::Identity(u, u));
-}
-
-std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
-  constexpr std::size_t kMax = 12;
-  std::stable_sort(ends.begin(), ends.end(),
-                   [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
-  std::vector<Basin> basins;
-  for (LocalSurface& end : ends) {
-    if (end.misfit > ends.front().misfit + kBasinAbove) {
-      break;
-    }
-    const auto known =
-        std::find_if(basins.begin(), basins.end(), [&](const Basin& basin) { return liesIn(basin, end.at); });
-    if (known != basins.end()) {
-      ++known->searches;
-    } else if (basins.size() < kMax) {
-      MatrixXd covariance = calcBasinCovariance(end.information);
-      basins.push_back({end, std::move(covariance), 1});
-    }
-  }
-  return basins;
 }
 
 BasinSearch findBasins(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,

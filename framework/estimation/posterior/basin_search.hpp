@@ -3,38 +3,15 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/posterior/misfit_surface.hpp"
+#include "framework/estimation/posterior/basin.hpp"
 
 namespace twinmap {
-
-/// More unknown parameters than these are searched for and drawn by means of the prior: no mixture follows so
-/// many dimensions, and no starts cover them.
-constexpr Eigen::Index kManyUnknown = 16;
-
-/// A minimum of chi-square within the bounds.
-struct Basin {
-  LocalSurface local;
-  Eigen::MatrixXd covariance;  ///< u x u: of the linear model, with the box as a normal distribution
-  int searches = 0;            ///< that ended in it
-};
 
 /// Points all over the box (u x n) to search from: of a Sobol sequence.
 Eigen::MatrixXd makeStarts(Eigen::Index dimensions, std::uint64_t seed, int count);
 
-constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
-
-/// Whether a point is within kBasinReach standard deviations of a basin's minimum.
-bool liesIn(const Basin& basin, const Eigen::VectorXd& at);
-
 /// Whether a basin's search came to its minimum, as near as searches of so many parameters go (choosePace).
 bool hasArrived(const Basin& basin);
-
-/// (information + that of the box as a normal distribution)^-1, u x u.
-Eigen::MatrixXd calcBasinCovariance(const Eigen::MatrixXd& information);
-
-/// The ends of searches that may bear some of the posterior, at most 25 above the best and 12 of them, each
-/// basin once: an end within three standard deviations of a better one is in its basin.
-std::vector<Basin> collectBasins(std::vector<LocalSurface> ends);
 
 /// What searches from all over the box found.
 struct BasinSearch {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/base/log/search_stage.hpp"
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basin.hpp"
 
 namespace twinmap {
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "framework/estimation/surrogate/fit_forward.hpp"
-#include "framework/estimation/surrogate/train_surrogate.hpp"
+#include "framework/estimation/surrogate/surrogate.hpp"
+#include "framework/estimation/surrogate/surrogate_samples.hpp"
+#include "framework/estimation/training_control.hpp"
 
 namespace twinmap {
 

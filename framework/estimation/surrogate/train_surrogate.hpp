@@ -4,26 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "framework/data/features/feature_block.hpp"
 #include "framework/data/features/noise_covariance.hpp"
 #include "framework/estimation/surrogate/simulation_gain.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
+#include "framework/estimation/surrogate/surrogate_samples.hpp"
 #include "framework/estimation/training_control.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
-
-/// Simulations to train a surrogate on.
-struct SurrogateSamples {
-  std::vector<FeatureInfo> infos;    ///< d
-  Eigen::MatrixXd points;            ///< m x n: updating, nuisance, known inputs, in their units
-  Eigen::MatrixXd clean_features;    ///< d x n
-  NoiseCovariance noise_covariance;  ///< d x d
-  Eigen::MatrixXd measured;          ///< d x n draws, with noise: column j + i n is draw i of simulation j
-  /// n, or none: derivatives of the clean features (d x u) with respect to the unknowns, the first u
-  /// variables, per width of their bounds; empty where a simulation has none.
-  std::vector<Eigen::MatrixXd> slopes{};
-};
 
 /// A trained surrogate and what a person should know about it.
 struct SurrogateTraining {

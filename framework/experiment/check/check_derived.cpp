@@ -2,6 +2,7 @@
 
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/check/check_scope.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {

@@ -7,6 +7,7 @@
 #include "framework/experiment/check/check_features.hpp"
 #include "framework/experiment/check/check_measurement.hpp"
 #include "framework/experiment/check/check_noise.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/parameter_figures.hpp"
 
 namespace twinmap {
@@ -107,12 +108,6 @@ void checkEvaluation(const ExperimentSpec& experiment) {
 }
 
 }  // namespace
-
-void requireKnown(const Name& name, const std::vector<std::string>& known, const std::string& what) {
-  if (std::find(known.begin(), known.end(), name.text) == known.end()) {
-    throw ExperimentError(name.where, name.text, "is not " + what + suggestName(name.text, known));
-  }
-}
 
 void checkExperiment(const ExperimentSpec& experiment) {
   checkName(experiment.name);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/expression/units.hpp"
 

@@ -8,6 +8,7 @@
 #include "framework/experiment/check/check_sampled.hpp"
 #include "framework/experiment/check/check_variables.hpp"
 #include "framework/experiment/check/field_check.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/expression/expression_tree.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"

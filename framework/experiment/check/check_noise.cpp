@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/noise_correlation.hpp"
 #include "kernels/linalg/autocorrelation.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/check/field_check.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 
 namespace twinmap {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/check/check_scope.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/system_spec.hpp"
 
 namespace twinmap {

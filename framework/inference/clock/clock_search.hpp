@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "framework/inference/clock/clock_fault.hpp"
+#include "framework/inference/clock/recorded_samples.hpp"
 #include "framework/inference/refiner.hpp"
 
 namespace twinmap {
@@ -15,15 +16,6 @@ struct ClockedMeasurement {
   Eigen::VectorXd features;                           ///< NaN also where they cannot be simulated
   PosteriorEstimate posterior;
   std::vector<ClockFault> faults;
-};
-
-/// What a recording is inferred from.
-struct RecordedSamples {
-  const ExperimentSpec& experiment;  ///< of a system that it describes; all features are samples
-  const ResponseLayout& layout;
-  const Eigen::VectorXd& features;  ///< d, NaN where missing
-  const Eigen::VectorXd& known;
-  const NoiseHypothesis& noise;  ///< as it is stated
 };
 
 /// The faults of a recorder's clock that explain a measurement which the stated noise does not: a delay, a

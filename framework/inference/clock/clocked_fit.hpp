@@ -3,7 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "framework/inference/clock/clock_search.hpp"
+#include "framework/inference/clock/clock_fault.hpp"
+#include "framework/inference/clock/recorded_samples.hpp"
 
 namespace twinmap {
 

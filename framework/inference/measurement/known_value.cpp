@@ -7,7 +7,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/source_location.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/external/answer.hpp"
 #include "framework/models/external/program_pool.hpp"

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/fmu/package/package.hpp"
 #include "framework/models/fmu/worker.hpp"

@@ -4,7 +4,6 @@
 #include <set>
 #include <type_traits>
 
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/fields/read_value.hpp"
 #include "framework/experiment/fields/write_value.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

@@ -47,18 +47,19 @@ void checkSwitchNumbers(const SystemSpec& system, ModelNumbers& numbers) {
   }
 }
 
-void requireWithinStops(ModelContext& context, const Eigen::Ref<const Eigen::VectorXd>& coordinates) {
+void requireWithinStops(const SystemSpec& system, const SystemNames& names, ModelNumbers& numbers,
+                        const Eigen::Ref<const Eigen::VectorXd>& coordinates) {
   constexpr double kRounding = 1e-12;  // as recordEvents() has it
-  for (const Stop<Expression>& stop : context.model.system.elements.get<Stop>()) {
+  for (const Stop<Expression>& stop : system.elements.get<Stop>()) {
     if (!stop.isRigid()) {
       continue;
     }
     const std::string owner = "stop on '" + stop.coordinate.text + "'";
     const char* key = stop.above ? "above" : "below";
     const Expression& at = stop.above ? *stop.above : *stop.below;
-    const double limit = context.numbers.calc(at, {owner, key, ""});
-    const double other = stop.against ? coordinates[context.names.findCoordinate(*stop.against)] : 0.0;
-    const double place = coordinates[context.names.findCoordinate(stop.coordinate)] - other;
+    const double limit = numbers.calc(at, {owner, key, ""});
+    const double other = stop.against ? coordinates[names.findCoordinate(*stop.against)] : 0.0;
+    const double place = coordinates[names.findCoordinate(stop.coordinate)] - other;
     const double beyond = stop.above ? place - limit : limit - place;
     if (beyond > kRounding * (std::abs(place) + std::abs(limit))) {
       throw SimulationFailure(

@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "framework/models/mechanism/model_context.hpp"
+#include "framework/models/mechanism/system_names.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
@@ -12,6 +13,7 @@ void checkSwitchNumbers(const SystemSpec& system, ModelNumbers& numbers);
 
 /// Throws SimulationFailure for coordinates beyond a rigid stop by more than rounding. `coordinates`: in the
 /// order of SystemNames.
-void requireWithinStops(ModelContext& context, const Eigen::Ref<const Eigen::VectorXd>& coordinates);
+void requireWithinStops(const SystemSpec& system, const SystemNames& names, ModelNumbers& numbers,
+                        const Eigen::Ref<const Eigen::VectorXd>& coordinates);
 
 }  // namespace twinmap

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/report/sections/calibration_tables.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "framework/analysis/calibration.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/report/sections/samples_table.hpp"
 
 namespace twinmap {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/store/trained_file.hpp"

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/store/trained_file.hpp"
 

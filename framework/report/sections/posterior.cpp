@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/sections.hpp"
 
 namespace twinmap {

@@ -1,6 +1,5 @@
 #include <fmt/core.h>
 
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/report/sections/calibration_tables.hpp"
 #include "framework/report/sections/sections.hpp"
 

@@ -1,6 +1,6 @@
 #include "framework/results/comparison/compared_run.hpp"
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/store/finished_run.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/simulation/integration/integration.hpp"
+#include "framework/simulation/integration/ode_problem.hpp"
 
 namespace twinmap {
 

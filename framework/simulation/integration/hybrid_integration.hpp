@@ -1,6 +1,7 @@
 #pragma once
 
-#include "framework/simulation/integration/hybrid_stepper.hpp"
+#include "framework/simulation/integration/integration.hpp"
+#include "framework/simulation/integration/make_hybrid_stepper.hpp"
 
 namespace twinmap {
 

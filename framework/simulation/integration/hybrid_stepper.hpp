@@ -1,13 +1,8 @@
 #pragma once
 
-#include <memory>
-
-#include "framework/simulation/integration/integration.hpp"
+#include "framework/simulation/integration/ode_problem.hpp"
 
 namespace twinmap {
-
-/// Dormand and Prince's explicit 5(4) pair, or Radau IIA for stiff problems (radau_stepper.hpp).
-enum class HybridMethod { kExplicit, kImplicit };
 
 /// One step of a method of integration, with its dense output. Not thread safe.
 class HybridStepper {
@@ -32,7 +27,5 @@ class HybridStepper {
   /// Whether it is as accurate there as at the end; else steps should end at outputs.
   virtual bool interpolatesAccurately() const { return true; }
 };
-
-std::unique_ptr<HybridStepper> makeHybridStepper(HybridMethod method, const IntegrationOptions& options);
 
 }  // namespace twinmap

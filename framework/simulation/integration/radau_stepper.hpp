@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "framework/simulation/integration/hybrid_stepper.hpp"
 
 namespace twinmap {

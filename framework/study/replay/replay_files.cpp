@@ -3,12 +3,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
-#include "framework/inference/text/inference_text.hpp"
-#include "framework/study/replay/replay_page.hpp"
 
 namespace twinmap {
 namespace {
@@ -80,18 +77,6 @@ std::string makeFitTable(const Replay& replay) {
     }
   }
   return makeMarkdownRows(rows, 1);
-}
-
-void writeReplay(const std::filesystem::path& folder, const Inferrer& inferrer, const Replay& replay) {
-  makeFolders(folder);
-  writeTextFile(folder / "replay.csv", makeReplayCsv(replay));
-  writeTextFile(folder / "residuals.csv", makeResidualsCsv(replay));
-  writeTextFile(folder / "fit.csv", makeCsv(listFits(replay)));
-  writeTextFile(folder / "inference.json",
-                makeInferenceJson(replay.inferred, inferrer.getExperiment().model.parameters,
-                                  inferrer.getExtractor().getInfos()) +
-                    "\n");
-  writeTextFile(folder / "report.html", makeReplayPage(inferrer, replay));
 }
 
 }  // namespace twinmap

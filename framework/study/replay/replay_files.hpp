@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "framework/study/replay/replay.hpp"
@@ -20,9 +19,5 @@ std::vector<std::vector<std::string>> listFits(const Replay& replay);
 
 /// The same, human-readable.
 std::string makeFitTable(const Replay& replay);
-
-/// Writes replay.csv, residuals.csv, fit.csv, inference.json and report.html, each whole or not at all; makes
-/// the folder. Throws std::runtime_error naming what cannot be written.
-void writeReplay(const std::filesystem::path& folder, const Inferrer& inferrer, const Replay& replay);
 
 }  // namespace twinmap

@@ -4,7 +4,9 @@
 #include <mutex>
 #include <vector>
 
-#include "framework/study/samples/simulate_missing.hpp"
+#include "framework/simulation/sample_generator.hpp"
+#include "framework/store/trajectory_store.hpp"
+#include "framework/study/samples/missing_options.hpp"
 
 namespace twinmap {
 

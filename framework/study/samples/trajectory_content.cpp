@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "framework/base/files/digest.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/fields/write_value.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

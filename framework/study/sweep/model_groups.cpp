@@ -9,8 +9,8 @@
 
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/check/check_features.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
 #include "framework/study/samples/model_store.hpp"

@@ -11,7 +11,7 @@
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/estimation/gp/online_processes.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/store/hdf5_difference.hpp"

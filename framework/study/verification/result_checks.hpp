@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/study/pipeline/simulated_sets.hpp"
-#include "framework/study/verification/verification.hpp"
+#include "framework/study/verification/check_result.hpp"
 
 namespace twinmap {
 

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "framework/study/pipeline/simulated_sets.hpp"
-#include "framework/study/verification/verification.hpp"
+#include "framework/study/verification/check_result.hpp"
 
 namespace twinmap {
 

@@ -76,11 +76,6 @@ void verifyAll(const ExperimentSpec& experiment, const VerifyOptions& options, V
 
 }  // namespace
 
-int Verification::countDifferences() const {
-  return static_cast<int>(std::count_if(checks.begin(), checks.end(),
-                                        [](const CheckResult& check) { return !check.difference.empty(); }));
-}
-
 std::vector<int> chooseSome(int count, int total, std::uint64_t seed, int stream) {
   std::vector<int> chosen = makePermutation(total, {seed, RandomPurpose::kVerification}, stream);
   chosen.resize(std::min(count, total));

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <exception>
 #include <filesystem>
-#include <string>
 #include <vector>
+
+#include "framework/study/verification/check_result.hpp"
 
 namespace twinmap {
 
@@ -13,32 +13,6 @@ struct VerifyOptions {
   std::uint64_t seed = 1;  ///< chooses them
   bool all = false;        ///< run the whole experiment again instead
   int threads = 1;
-};
-
-/// One comparison of what a file holds with what it is recomputed to be.
-struct CheckResult {
-  std::string name;        ///< the file, and what of it
-  std::string difference;  ///< the first; empty if there is none
-};
-
-struct Verification {
-  std::filesystem::path folder;
-  std::vector<std::string> build_differences;  ///< between the run and this program: bits may differ for them
-  std::vector<std::string> notes;              ///< what could not be compared, and why
-  std::vector<CheckResult> checks;
-
-  int countDifferences() const;
-  /// Adds a check; what the function throws is a difference, too.
-  template <class FindDifference>
-  void check(const std::string& name, const FindDifference& find_difference) {
-    std::string difference;
-    try {
-      difference = find_difference();
-    } catch (const std::exception& error) {
-      difference = error.what();
-    }
-    checks.push_back({name, difference});
-  }
 };
 
 /// Recomputes a part of a run from its resolved.yaml and compares bit for bit:

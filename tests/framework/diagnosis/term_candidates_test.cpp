@@ -7,6 +7,7 @@
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/candidates/replace_name.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

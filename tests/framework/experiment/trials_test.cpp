@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/sweep/sweep_cases.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"

@@ -4,7 +4,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/noise/signal_noise.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"

@@ -8,6 +8,7 @@
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/study/replay/replay_files.hpp"
+#include "framework/study/replay/write_replay.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include "framework/models/fmu/run/failure.hpp"
 #include "framework/models/fmu/run/run_setting.hpp"
 #include "framework/simulation/excitation/excitation.hpp"
-#include "framework/simulation/integration/hybrid_stepper.hpp"
+#include "framework/simulation/integration/make_hybrid_stepper.hpp"
 
 namespace twinmap::fmi {
 

@@ -2,6 +2,7 @@
 
 #include "framework/models/mechanism/compare_with_simbody.hpp"
 #include "framework/models/mechanism/lanes/motion_checks.hpp"
+#include "framework/models/mechanism/loops/make_loop_model.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 
 namespace twinmap {

@@ -157,7 +157,8 @@ class LaneRunner::Impl : public lanes::SampleStream {
       checks_->check(point);
       fillModes(column, point);
       start_.fill(point, sample);
-      requireWithinStops(checks_->updContext(),
+      ModelContext& context = checks_->updContext();
+      requireWithinStops(context.model.system, context.names, context.numbers,
                          Eigen::Map<const VectorXd>(sample.initial.data(), model_.coordinate_count));
     } catch (const SimulationFailure& failure) {
       return failure.what();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/simbody/initial_state.hpp"
 #include "framework/models/mechanism/simbody/outputs.hpp"

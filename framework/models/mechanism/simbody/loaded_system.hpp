@@ -7,6 +7,7 @@
 #include "framework/models/mechanism/equations/reactions.hpp"
 #include "framework/models/mechanism/load_numbers.hpp"
 #include "framework/models/mechanism/loops/assembly.hpp"
+#include "framework/models/mechanism/loops/make_loop_model.hpp"
 #include "framework/models/mechanism/model_context.hpp"
 #include "framework/models/mechanism/simbody/body_tree.hpp"
 #include "framework/models/mechanism/simbody/state_expressions.hpp"

@@ -2,7 +2,7 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
-#include "framework/experiment/check/check_experiment.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/study/pipeline/training/train_interruptibly.hpp"
 
 namespace twinmap {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/models/mechanism/lanes/recording/recorded_sampling.hpp"
+#include "framework/models/mechanism/lanes/recording/sampled_model.hpp"
 
 namespace twinmap {
 

@@ -1,4 +1,4 @@
-#include "framework/simulation/integration/hybrid_stepper.hpp"
+#include "framework/simulation/integration/make_hybrid_stepper.hpp"
 
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>

@@ -1,4 +1,4 @@
-#include "framework/models/mechanism/loops/loop_model.hpp"
+#include "framework/models/mechanism/loops/make_loop_model.hpp"
 
 #include <algorithm>
 #include <cmath>
