@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_extractor.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
 
 namespace twinmap::bench {

@@ -6,7 +6,7 @@
 
 #include "bench/simulation/mechanism.hpp"
 #include "framework/experiment/experiment_spec.hpp"
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 
 namespace twinmap::bench {
 

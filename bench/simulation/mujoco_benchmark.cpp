@@ -15,7 +15,7 @@
 #include "bench/simulation/report.hpp"
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 #include "framework/simulation/sample_generator.hpp"
 
 namespace twinmap::bench {

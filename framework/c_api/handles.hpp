@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/c_api/twinmap.h"
-#include "framework/inference/inference_source.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 
 namespace twinmap::c_api {
 

@@ -3,8 +3,9 @@
 
 #include "framework/c_api/guard.hpp"
 #include "framework/c_api/handles.hpp"
-#include "framework/data/measurement/make_table.hpp"
-#include "framework/inference/measurement/known_value.hpp"
+#include "framework/data/measurement/files/make_table.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
+#include "framework/inference/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
 
 namespace {

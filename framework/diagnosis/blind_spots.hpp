@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/diagnosis/candidates/term_candidate.hpp"
-#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/problem/recorded_problem.hpp"
 
 namespace twinmap {
 

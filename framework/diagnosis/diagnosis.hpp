@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "framework/diagnosis/diagnosis_step.hpp"
-#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/problem/recorded_problem.hpp"
 #include "framework/diagnosis/remainder/remainder.hpp"
-#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 
 namespace twinmap {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/problem/recorded_problem.hpp"
 #include "framework/inference/inferrer.hpp"
 
 namespace twinmap {

@@ -3,9 +3,9 @@
 #include <memory>
 #include <vector>
 
-#include "framework/diagnosis/augment.hpp"
-#include "framework/diagnosis/recorded_problem.hpp"
-#include "framework/diagnosis/score_test.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
+#include "framework/diagnosis/problem/recorded_problem.hpp"
+#include "framework/diagnosis/problem/score_test.hpp"
 
 namespace twinmap {
 

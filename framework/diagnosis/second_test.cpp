@@ -8,7 +8,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
-#include "framework/diagnosis/score_test.hpp"
+#include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "kernels/linalg/decompositions.hpp"

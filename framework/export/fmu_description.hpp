@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/export/exported_model.hpp"
+#include "framework/export/model/exported_model.hpp"
 
 namespace twinmap {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/export/exported_model.hpp"
+#include "framework/export/model/exported_model.hpp"
 
 namespace twinmap {
 

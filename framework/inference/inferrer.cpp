@@ -4,7 +4,7 @@
 
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/store/reduction_group.hpp"
 

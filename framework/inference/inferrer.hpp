@@ -9,11 +9,11 @@
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/estimation/trained/online_model.hpp"
-#include "framework/inference/clock/clock_fault.hpp"
-#include "framework/inference/measurement/measurement_reader.hpp"
+#include "framework/inference/asked.hpp"
+#include "framework/inference/clock_fault.hpp"
+#include "framework/inference/measurement_reader.hpp"
 #include "framework/inference/posterior_estimate.hpp"
 #include "framework/inference/stated_prior.hpp"
-#include "framework/inference/text/asked.hpp"
 #include "framework/store/trained_file.hpp"
 
 namespace twinmap {

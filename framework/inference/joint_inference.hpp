@@ -9,7 +9,7 @@
 
 #include "framework/estimation/posterior/agreement.hpp"
 #include "framework/experiment/yaml/yaml_node.hpp"
-#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/known_value.hpp"
 #include "framework/inference/refiner.hpp"
 
 namespace twinmap {

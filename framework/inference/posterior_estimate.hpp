@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/estimation/estimate.hpp"
-#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "framework/estimation/surrogate/posterior/posterior_sampler.hpp"
 #include "framework/experiment/model/model_spec.hpp"

@@ -2,7 +2,7 @@
 
 #include "framework/models/external/program_simulator.hpp"
 #include "framework/models/fmu/fmu_simulator.hpp"
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 #include "framework/models/trials_simulator.hpp"
 #include "framework/simulation/simulation_failure.hpp"
 

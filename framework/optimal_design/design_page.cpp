@@ -10,7 +10,7 @@
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
-#include "framework/report/verdict.hpp"
+#include "framework/report/sections/verdict.hpp"
 #include "framework/simulation/excitation/calc_input_signals.hpp"
 
 namespace twinmap::experiment_design {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/experiment/fields/overrides.hpp"
+#include "framework/experiment/tree/overrides.hpp"
 #include "framework/simulation/excitation/excitation_terms.hpp"
 
 namespace twinmap::experiment_design {

@@ -5,7 +5,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/experiment/fields/overrides.hpp"
+#include "framework/experiment/tree/overrides.hpp"
 
 namespace twinmap::experiment_design {
 namespace {

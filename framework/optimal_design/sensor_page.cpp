@@ -9,7 +9,7 @@
 #include "framework/optimal_design/sensor_files.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
-#include "framework/report/verdict.hpp"
+#include "framework/report/sections/verdict.hpp"
 
 namespace twinmap::experiment_design {
 namespace {

@@ -1,5 +1,5 @@
 #include "framework/base/text/source_location.hpp"
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 #include "framework/python/bindings.hpp"
 
 namespace twinmap::python {

@@ -1,7 +1,7 @@
 #include <pybind11/stl.h>
 
 #include "framework/data/noise/noise.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"

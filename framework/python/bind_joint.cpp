@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/recording_list.hpp"
 #include "framework/inference/trial_reader.hpp"
 #include "framework/python/arrays.hpp"

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/known_value.hpp"
 #include "framework/inference/segments/segment_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"

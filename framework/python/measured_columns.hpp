@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "framework/data/measurement/make_table.hpp"
-#include "framework/inference/measurement/known_value.hpp"
+#include "framework/data/measurement/files/make_table.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
+#include "framework/inference/known_value.hpp"
 
 namespace twinmap::python {
 

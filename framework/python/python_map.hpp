@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "framework/inference/inference_source.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 
 namespace twinmap::python {
 

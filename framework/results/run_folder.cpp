@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "framework/experiment/check/known_names.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/resolve_defaults.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/files/resolve_defaults.hpp"
 #include "framework/store/predictions_file.hpp"
 #include "framework/store/samples_file.hpp"
 #include "framework/store/trained_file.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/yaml/compare_trees.hpp"
 
 namespace twinmap {

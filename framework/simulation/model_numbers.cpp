@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "framework/experiment/expression/curve.hpp"
+#include "framework/experiment/model/curve.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {

@@ -5,10 +5,10 @@
 #include <stdexcept>
 
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/candidates/observed_motion.hpp"
 #include "framework/diagnosis/diagnosis.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"

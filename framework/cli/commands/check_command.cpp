@@ -7,8 +7,8 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/expression/jumps.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/model/jumps.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/study/sweep/model_groups.hpp"
 

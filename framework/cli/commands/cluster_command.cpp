@@ -6,7 +6,7 @@
 #include "framework/base/log/log.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/signals.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/study/shards/run_shard.hpp"
 #include "framework/study/shards/submission.hpp"
 #include "framework/study/sweep/plan.hpp"

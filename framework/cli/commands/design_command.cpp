@@ -7,7 +7,7 @@
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/experiment/check/uniform_priors.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/optimal_design/excitation.hpp"
 #include "framework/optimal_design/excitation_files.hpp"
 #include "framework/optimal_design/sensor_files.hpp"

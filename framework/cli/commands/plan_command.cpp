@@ -4,7 +4,7 @@
 #include "framework/base/log/log.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/study/sweep/plan.hpp"
 

@@ -2,7 +2,7 @@
 #include <iostream>
 
 #include "framework/cli/commands/commands.hpp"
-#include "framework/report/report.hpp"
+#include "framework/report/sections/report.hpp"
 
 namespace twinmap::cli {
 

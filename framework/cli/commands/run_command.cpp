@@ -11,7 +11,7 @@
 #include "framework/cli/signals.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/check/check_noise.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/results/tables.hpp"
 #include "framework/results/warnings.hpp"
 #include "framework/study/pipeline/require_model.hpp"

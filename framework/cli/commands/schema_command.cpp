@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "framework/cli/commands/commands.hpp"
-#include "framework/experiment/fields/json_schema.hpp"
+#include "framework/experiment/tree/json_schema.hpp"
 
 namespace twinmap::cli {
 

@@ -1,6 +1,6 @@
 #include "framework/data/features/experiment_features.hpp"
 
-#include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/output_units.hpp"
 #include "framework/simulation/excitation/calc_input_signals.hpp"
 
 namespace twinmap {

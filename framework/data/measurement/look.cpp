@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/data/measurement/recording/row_order.hpp"
+#include "framework/data/measurement/row_order.hpp"
 #include "framework/experiment/expression/units.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 #include "framework/experiment/measurement_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/model_numbers.hpp"

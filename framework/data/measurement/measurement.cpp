@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/data/measurement/measurement_start.hpp"
+#include "framework/data/measurement/trigger.hpp"
 #include "framework/experiment/expression/units.hpp"
 
 namespace twinmap {

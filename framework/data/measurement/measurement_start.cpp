@@ -5,17 +5,15 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/base/text/trim.hpp"
 #include "framework/data/measurement/files/time_stamp.hpp"
 #include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/trigger.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr const char* kFirst = "first";
 
 bool isPast(const Trigger& trigger, double value) {
   return trigger.above ? value > trigger.level : value < trigger.level;
@@ -54,25 +52,6 @@ double findTriggered(const Table& table, const Trigger& trigger, const VectorXd&
 }
 
 }  // namespace
-
-std::optional<Trigger> findTrigger(const MeasurementStartSpec& start) {
-  double stamp = 0.0;
-  if (!start.when || start.when->text == kFirst || parseTimeStamp(start.when->text, stamp)) {
-    return std::nullopt;
-  }
-  const std::string& text = start.when->text;
-  const std::size_t sign = text.find_last_of("<>");
-  Trigger trigger;
-  if (sign != std::string::npos) {
-    trigger = {trim(text.substr(0, sign)), text[sign] == '>', 0.0};
-  }
-  if (trigger.column.empty() || !parseLiteral(trim(text.substr(sign + 1)), trigger.level)) {
-    throw ExperimentError(start.when->where, text,
-                          "must be 'first', a date and time such as 2026-11-26T10:00:00Z, or a column and a "
-                          "number, such as 'F > 0.5'");
-  }
-  return trigger;
-}
 
 double findStart(const Table& table, const MeasurementSpec& spec) {
   double stamp = 0.0;

@@ -1,7 +1,7 @@
 #include "framework/data/measurement/signal_experiment.hpp"
 
 #include "framework/data/measurement/measured_signals.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/experiment/sweep/sweep_cases.hpp"
+#include "framework/experiment/files/sweep_cases.hpp"
 
 namespace twinmap {
 

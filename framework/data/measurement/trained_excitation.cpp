@@ -7,7 +7,7 @@
 
 #include "framework/data/measurement/lagrange.hpp"
 #include "framework/data/measurement/measurement.hpp"
-#include "framework/data/measurement/recording/row_order.hpp"
+#include "framework/data/measurement/row_order.hpp"
 #include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {

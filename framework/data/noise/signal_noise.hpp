@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/noise/noise_estimate.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 
 namespace twinmap {

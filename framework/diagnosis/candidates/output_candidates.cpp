@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/diagnosis/candidates/term_candidates.hpp"
-#include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/output_units.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/process_fit.hpp"
-#include "framework/diagnosis/score_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 

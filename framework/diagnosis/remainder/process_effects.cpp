@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 

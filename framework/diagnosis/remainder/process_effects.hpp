@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/diagnosis/candidates/observed_motion.hpp"
-#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/problem/recorded_problem.hpp"
 
 namespace twinmap {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/problem/recorded_problem.hpp"
 #include "framework/diagnosis/remainder/process_effects.hpp"
 
 namespace twinmap {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/diagnosis/recorded_problem.hpp"
+#include "framework/diagnosis/problem/recorded_problem.hpp"
 
 namespace twinmap {
 

@@ -1,8 +1,8 @@
 #include "framework/diagnosis/text/corrected_file.hpp"
 
 #include "framework/data/measurement/measured_signals.hpp"
-#include "framework/diagnosis/augment.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap {

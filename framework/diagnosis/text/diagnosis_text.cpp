@@ -7,8 +7,8 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
+#include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
-#include "framework/diagnosis/score_test.hpp"
 
 namespace twinmap {
 

@@ -6,7 +6,7 @@
 #include "framework/estimation/derived/value_distribution.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/experiment/experiment_spec.hpp"
-#include "framework/experiment/expression/curve.hpp"
+#include "framework/experiment/model/curve.hpp"
 
 namespace twinmap {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/posterior/misfit_surface.hpp"
+#include "framework/estimation/posterior/basins/misfit_surface.hpp"
 
 namespace twinmap {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/posterior/basin_search.hpp"
-#include "framework/estimation/posterior/valley.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
+#include "framework/estimation/posterior/basins/valley.hpp"
 
 namespace twinmap {
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
 #include "framework/estimation/posterior/posterior_problem.hpp"
 #include "framework/estimation/segments/segmented_misfit.hpp"
 

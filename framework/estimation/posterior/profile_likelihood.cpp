@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "framework/estimation/posterior/search_team.hpp"
+#include "framework/estimation/posterior/basins/search_team.hpp"
 
 namespace twinmap {
 

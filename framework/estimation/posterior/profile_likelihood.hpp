@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "framework/estimation/posterior/misfit_surface.hpp"
+#include "framework/estimation/posterior/basins/misfit_surface.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {

@@ -6,10 +6,10 @@
 #include <numeric>
 #include <optional>
 
+#include "framework/estimation/posterior/basins/straight_ridge.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
 #include "framework/estimation/posterior/profile_likelihood.hpp"
-#include "framework/estimation/posterior/straight_ridge.hpp"
 
 namespace twinmap {
 

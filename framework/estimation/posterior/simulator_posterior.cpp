@@ -6,12 +6,13 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/estimation/informativeness.hpp"
+#include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/draws/valley_places.hpp"
 #include "framework/estimation/posterior/sampling_ways.hpp"
-#include "framework/estimation/posterior/search_team.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
+#include "framework/experiment/check/known_names.hpp"
 
 namespace twinmap {
 
@@ -48,14 +49,6 @@ ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTri
   }
   return ResidualLoss(trial.noise, *trial.model, trial.model->getWhole())
       .standardize(best.residual, jacobian, best.degrees);
-}
-
-std::vector<std::string> listNames(const std::vector<ParameterSpec>& parameters) {
-  std::vector<std::string> names;
-  for (const ParameterSpec& parameter : parameters) {
-    names.push_back(parameter.name.text);
-  }
-  return names;
 }
 
 /// Moments, draws and modes, of the first parameters, as many as `coordinates` has.
@@ -117,7 +110,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   MisfitSurface& surface = whole.upd();
   const LogCoordinates& coordinates = whole.getCoordinates();
   std::optional<SearchStage> stage(std::in_place, "search for the best fit");
-  beginBest(listNames(problem.unknown));
+  beginBest(collectNames(problem.unknown));
   const MatrixXd starts = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
   const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed,
                                        limitSearch(options.search, problem.drawn));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
 #include "framework/estimation/posterior/draws/posterior_draws.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
 #include "framework/estimation/posterior/posterior_problem.hpp"

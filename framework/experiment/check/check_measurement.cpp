@@ -4,8 +4,8 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/check/known_names.hpp"
-#include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/expression/units.hpp"
+#include "framework/experiment/model/output_units.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/experiment/expression/output_units.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/model/output_units.hpp"
 
 namespace twinmap {
 namespace {

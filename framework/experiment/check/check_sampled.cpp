@@ -4,7 +4,7 @@
 
 #include "framework/experiment/check/field_check.hpp"
 #include "framework/experiment/check/known_names.hpp"
-#include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/output_units.hpp"
 
 namespace twinmap {
 namespace {

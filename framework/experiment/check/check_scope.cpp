@@ -7,7 +7,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/expression/named_values.hpp"
-#include "framework/experiment/fields/read_value.hpp"
+#include "framework/experiment/tree/read_value.hpp"
 
 namespace twinmap {
 namespace {

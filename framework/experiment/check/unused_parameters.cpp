@@ -3,8 +3,8 @@
 #include <cctype>
 #include <set>
 
-#include "framework/experiment/fields/write_value.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/tree/write_value.hpp"
 
 namespace twinmap {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/experiment/expression/algebra.hpp"
 #include "framework/experiment/expression/expression_tree.hpp"
-#include "framework/experiment/model/algebra.hpp"
 
 namespace twinmap {
 

@@ -14,7 +14,7 @@ inline constexpr NumberRule kKnotCount{2.0, 50.0, true, "must be a whole number 
 
 /// A static curve of a machine that expressions use as a function, `motor(u)`. Smooth between knots at equal
 /// distances over `range`, whose values are expressions of parameters and constants; a straight line beyond
-/// (expression/curve.hpp).
+/// (curve.hpp).
 struct CurveSpec {
   Name name;
   Name over;     ///< what it is a curve of, for its unit and the pictures: a coordinate, state or signal

@@ -6,9 +6,9 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/export/c_code/c_readme.hpp"
-#include "framework/export/compress_map.hpp"
-#include "framework/export/runtime_sources.hpp"
-#include "framework/export/selftest.hpp"
+#include "framework/export/c_code/runtime_sources.hpp"
+#include "framework/export/c_code/selftest.hpp"
+#include "framework/export/model/compress_map.hpp"
 #include "framework/inference/inferrer.hpp"
 
 namespace twinmap {

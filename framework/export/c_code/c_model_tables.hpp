@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/export/c_code/c_tables.hpp"
-#include "framework/export/exported_model.hpp"
+#include "framework/export/model/exported_model.hpp"
 
 namespace twinmap {
 

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "framework/base/text/source_location.hpp"
-#include "framework/export/runtime_sources.hpp"
+#include "framework/export/c_code/runtime_sources.hpp"
 
 namespace twinmap {
 namespace {

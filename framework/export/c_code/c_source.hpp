@@ -3,7 +3,7 @@
 #include <string>
 
 #include "framework/export/c_code/c_model_tables.hpp"
-#include "framework/export/exported_model.hpp"
+#include "framework/export/model/exported_model.hpp"
 
 namespace twinmap {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_fit.hpp"
 #include "kernels/linalg/decompositions.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "framework/inference/clock/clock_fault.hpp"
 #include "framework/inference/clock/recorded_samples.hpp"
+#include "framework/inference/clock_fault.hpp"
 #include "framework/inference/refiner.hpp"
 
 namespace twinmap {

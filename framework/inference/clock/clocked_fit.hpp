@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "framework/inference/clock/clock_fault.hpp"
 #include "framework/inference/clock/recorded_samples.hpp"
+#include "framework/inference/clock_fault.hpp"
 
 namespace twinmap {
 

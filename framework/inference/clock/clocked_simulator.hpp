@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "framework/inference/clock/clock_fault.hpp"
+#include "framework/inference/clock_fault.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "framework/inference/inferrer.hpp"
-#include "framework/inference/measurement/measurement_reader.hpp"
+#include "framework/inference/measurement_reader.hpp"
 
 namespace twinmap {
 

@@ -5,7 +5,7 @@
 #include "framework/base/text/source_location.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/direct_inference.hpp"
+#include "framework/inference/measurement/direct_inference.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
 #include "framework/inference/measurement/posterior_need.hpp"
 

@@ -1,6 +1,6 @@
 #include "framework/inference/measurement/posterior_need.hpp"
 
-#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "framework/base/log/notice.hpp"
-#include "framework/inference/text/asked.hpp"
+#include "framework/inference/asked.hpp"
 
 namespace twinmap {
 

@@ -9,8 +9,8 @@
 
 #include "framework/base/log/log.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/feature_spec.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/tolerances/onset_speeds.hpp"
 

@@ -4,9 +4,9 @@
 #include <set>
 #include <type_traits>
 
-#include "framework/experiment/fields/read_value.hpp"
-#include "framework/experiment/fields/write_value.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/tree/read_value.hpp"
+#include "framework/experiment/tree/write_value.hpp"
 #include "framework/models/fmu/run/bind_variables.hpp"
 
 namespace twinmap::fmi {

@@ -1,6 +1,6 @@
 #include "framework/models/mechanism/load_numbers.hpp"
 
-#include "framework/models/mechanism/equations/element_values.hpp"
+#include "framework/models/mechanism/element_values.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/model/output_units.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

@@ -6,7 +6,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
-#include "framework/report/verdict.hpp"
+#include "framework/report/sections/verdict.hpp"
 
 namespace twinmap {
 namespace {

@@ -9,7 +9,7 @@
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/report/sections/sweep_figures.hpp"
-#include "framework/report/verdict.hpp"
+#include "framework/report/sections/verdict.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,7 +1,7 @@
 #include "framework/results/comparison/compared_run.hpp"
 
 #include "framework/experiment/check/known_names.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/store/finished_run.hpp"
 
 namespace twinmap {

@@ -9,7 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/report/html.hpp"
-#include "framework/report/verdict.hpp"
+#include "framework/report/sections/verdict.hpp"
 #include "framework/study/diagnosis/force_figures.hpp"
 #include "framework/study/diagnosis/residual_figures.hpp"
 

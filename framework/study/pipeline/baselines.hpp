@@ -6,7 +6,7 @@
 
 #include "framework/data/reduction/feature_transform.hpp"
 #include "framework/estimation/estimate.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 
 namespace twinmap {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/study/pipeline/exact_posteriors.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 #include "framework/study/pipeline/training/trained_map.hpp"
 
 namespace twinmap {

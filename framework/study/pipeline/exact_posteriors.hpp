@@ -4,7 +4,7 @@
 
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "framework/results/run_summary.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 
 namespace twinmap {
 

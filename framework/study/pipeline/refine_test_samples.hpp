@@ -5,7 +5,7 @@
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/results/run_summary.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 
 namespace twinmap {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/measured_signals.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/estimation/draws.hpp"

@@ -16,7 +16,7 @@
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
-#include "framework/report/verdict.hpp"
+#include "framework/report/sections/verdict.hpp"
 #include "framework/study/replay/replay_files.hpp"
 #include "framework/study/replay/residual_spectrum.hpp"
 

@@ -5,9 +5,9 @@
 
 #include "framework/base/files/digest.hpp"
 #include "framework/experiment/check/known_names.hpp"
-#include "framework/experiment/fields/write_value.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/tree/write_value.hpp"
 
 namespace twinmap {
 namespace {

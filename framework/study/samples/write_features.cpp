@@ -10,7 +10,7 @@
 #include "framework/base/hdf5/hdf5_file.hpp"
 #include "framework/base/log/interrupted.hpp"
 #include "framework/data/noise/noise.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
 #include "framework/store/parameters_group.hpp"

@@ -6,7 +6,7 @@
 
 #include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/pipeline/run_experiment.hpp"
 #include "framework/study/samples/model_store.hpp"

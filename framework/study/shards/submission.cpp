@@ -7,7 +7,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/escape.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/shards/shard_record.hpp"
 #include "framework/study/sweep/run_sweep.hpp"

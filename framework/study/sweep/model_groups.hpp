@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/experiment/sweep/sweep_cases.hpp"
+#include "framework/experiment/files/sweep_cases.hpp"
 #include "framework/simulation/response_layout.hpp"
 #include "framework/store/trajectory_store.hpp"
 

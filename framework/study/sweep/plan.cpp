@@ -11,8 +11,8 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/data/features/feature_extractor.hpp"
+#include "framework/experiment/files/resolve_defaults.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/experiment/resolve_defaults.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/sweep/case_cost.hpp"
 #include "framework/study/sweep/probe.hpp"

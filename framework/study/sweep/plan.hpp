@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "framework/base/log/stage_notes.hpp"
-#include "framework/experiment/sweep/sweep_cases.hpp"
+#include "framework/experiment/files/sweep_cases.hpp"
 #include "framework/study/sweep/probe.hpp"
 #include "framework/study/sweep/stored_counts.hpp"
 

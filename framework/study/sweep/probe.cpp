@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "framework/base/files/temporary_folder.hpp"
-#include "framework/experiment/resolve_defaults.hpp"
+#include "framework/experiment/files/resolve_defaults.hpp"
 #include "framework/study/pipeline/run_experiment.hpp"
 #include "framework/study/pipeline/training/fit_online.hpp"
 #include "framework/study/samples/stencils.hpp"

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "framework/experiment/sweep/sweep_cases.hpp"
+#include "framework/experiment/files/sweep_cases.hpp"
 
 namespace twinmap {
 

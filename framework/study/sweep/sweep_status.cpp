@@ -6,7 +6,7 @@
 
 #include "framework/base/files/folder_lock.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/sweep/sweep_folder.hpp"

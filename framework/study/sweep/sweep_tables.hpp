@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/experiment/sweep/sweep_cases.hpp"
+#include "framework/experiment/files/sweep_cases.hpp"
 
 namespace twinmap {
 

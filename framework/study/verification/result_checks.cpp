@@ -18,7 +18,7 @@
 #include "framework/store/predictions_file.hpp"
 #include "framework/store/trained_file.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 #include "framework/study/pipeline/refine_test_samples.hpp"
 #include "framework/study/pipeline/training/store_map.hpp"
 #include "framework/study/pipeline/training/train_maps.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/study/pipeline/simulated_sets.hpp"
+#include "framework/study/pipeline/preparation/simulated_sets.hpp"
 #include "framework/study/verification/check_result.hpp"
 
 namespace twinmap {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "framework/study/pipeline/simulated_sets.hpp"
+#include "framework/study/pipeline/preparation/simulated_sets.hpp"
 #include "framework/study/verification/check_result.hpp"
 
 namespace twinmap {

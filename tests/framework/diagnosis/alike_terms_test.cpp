@@ -6,7 +6,7 @@
 #include "framework/base/random/random.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/diagnosis.hpp"
-#include "framework/diagnosis/score_test.hpp"
+#include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/diagnosis/term_ranking.hpp"
 #include "tests/framework/diagnosis/measured_cart.hpp"

@@ -6,7 +6,7 @@
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "tests/framework/diagnosis/measured_cart.hpp"
 
 namespace twinmap {

@@ -6,7 +6,7 @@
 #include "framework/data/noise/noise.hpp"
 #include "framework/diagnosis/remainder/remainder.hpp"
 #include "framework/diagnosis/structures.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 

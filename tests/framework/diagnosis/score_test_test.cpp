@@ -1,4 +1,4 @@
-#include "framework/diagnosis/score_test.hpp"
+#include "framework/diagnosis/problem/score_test.hpp"
 
 #include <gtest/gtest.h>
 

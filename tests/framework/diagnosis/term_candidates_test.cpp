@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "framework/data/features/experiment_features.hpp"
-#include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/candidates/replace_name.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/make_simulator.hpp"

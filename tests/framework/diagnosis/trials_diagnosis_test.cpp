@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "framework/base/text/source_location.hpp"
-#include "framework/diagnosis/augment.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/diagnosis.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 #include "tests/framework/diagnosis/measured_cart.hpp"

@@ -1,11 +1,11 @@
 // Curves by their knots: against scipy's piecewise cubics, and what they promise of shape.
-#include "framework/experiment/expression/curve.hpp"
+#include "framework/experiment/model/curve.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

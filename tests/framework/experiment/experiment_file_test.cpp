@@ -1,12 +1,12 @@
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include "framework/experiment/check/known_names.hpp"
+#include "framework/experiment/files/resolve_defaults.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/experiment/resolve_defaults.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

@@ -2,8 +2,8 @@
 
 #include <Eigen/Dense>
 
-#include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/expression/named_values.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 
 namespace twinmap {
 namespace {

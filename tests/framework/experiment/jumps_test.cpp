@@ -1,4 +1,4 @@
-#include "framework/experiment/expression/jumps.hpp"
+#include "framework/experiment/model/jumps.hpp"
 
 #include <gtest/gtest.h>
 

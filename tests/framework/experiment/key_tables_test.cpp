@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "framework/experiment/fields/json_schema.hpp"
+#include "framework/experiment/tree/json_schema.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/experiment/column_spec.hpp"
-#include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/expression/units.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

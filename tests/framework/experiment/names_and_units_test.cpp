@@ -5,8 +5,8 @@
 
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/experiment/check/check_scope.hpp"
-#include "framework/experiment/experiment_file.hpp"
 #include "framework/experiment/expression/units.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

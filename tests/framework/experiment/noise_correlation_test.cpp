@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

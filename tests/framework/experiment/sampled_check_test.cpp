@@ -1,7 +1,7 @@
 // What a check says against sensors, motions and controllers.
 #include <gtest/gtest.h>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/files/sweep_cases.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
-#include "framework/experiment/sweep/sweep_cases.hpp"
 #include "framework/experiment/yaml/compare_trees.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 

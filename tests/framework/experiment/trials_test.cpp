@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/experiment/check/known_names.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/sweep/sweep_cases.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/files/sweep_cases.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
 

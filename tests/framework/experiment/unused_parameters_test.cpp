@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 
 namespace twinmap {
 namespace {

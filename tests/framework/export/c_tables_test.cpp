@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "framework/export/c_code/c_source.hpp"
-#include "framework/export/runtime_sources.hpp"
+#include "framework/export/c_code/runtime_sources.hpp"
 
 namespace twinmap {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/segments/segment_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
 

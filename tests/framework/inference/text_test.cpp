@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "framework/inference/text/asked.hpp"
+#include "framework/inference/asked.hpp"
 #include "framework/inference/text/explain_notice.hpp"
 #include "framework/inference/text/inference_text.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/tolerances/onset_speeds.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/data/features/experiment_features.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/trial_reader.hpp"
 #include "framework/models/make_simulator.hpp"

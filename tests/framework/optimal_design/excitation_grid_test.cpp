@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "framework/optimal_design/design_search.hpp"

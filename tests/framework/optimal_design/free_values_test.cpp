@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/experiment/fields/overrides.hpp"
-#include "framework/experiment/fields/read_value.hpp"
+#include "framework/experiment/tree/overrides.hpp"
+#include "framework/experiment/tree/read_value.hpp"
 
 namespace twinmap::experiment_design {
 namespace {

@@ -1,11 +1,11 @@
-#include "framework/report/report.hpp"
+#include "framework/report/sections/report.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "framework/base/log/notice.hpp"
-#include "framework/report/verdict.hpp"
+#include "framework/report/sections/verdict.hpp"
 #include "tests/framework/report/run_fixture.hpp"
 
 namespace twinmap {

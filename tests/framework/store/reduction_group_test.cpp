@@ -4,7 +4,7 @@
 
 #include "framework/base/files/temporary_folder.hpp"
 #include "framework/data/features/experiment_features.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 
 namespace twinmap {
 namespace {

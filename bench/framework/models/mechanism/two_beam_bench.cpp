@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/framework/models/mechanism/naive_simbody.hpp"
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "tests/framework/models/mechanism/two_beam.hpp"
 

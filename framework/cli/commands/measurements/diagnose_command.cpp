@@ -8,8 +8,8 @@
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
-#include "framework/inference/inference_source.hpp"
-#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/known_value.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/study/diagnosis/diagnosis_page.hpp"
 

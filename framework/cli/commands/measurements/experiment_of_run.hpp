@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 
 namespace twinmap::cli {
 

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "framework/cli/commands/commands.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/look.hpp"
 
 namespace twinmap::cli {

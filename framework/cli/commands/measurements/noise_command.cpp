@@ -2,11 +2,12 @@
 #include <iostream>
 
 #include "framework/cli/commands/commands.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/noise/signal_noise.hpp"
 #include "framework/experiment/check/known_names.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/expression/output_units.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/model/output_units.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap::cli {

@@ -3,8 +3,9 @@
 
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/diagnosis/missing_term.hpp"
-#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/study/replay/replay_files.hpp"

@@ -2,9 +2,10 @@
 #include "framework/cli/commands/measurements/experiment_of_run.hpp"
 #include "framework/cli/commands/measurements/inferred_printer.hpp"
 #include "framework/cli/waiting_line.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
-#include "framework/inference/measurement/known_value.hpp"
+#include "framework/inference/known_value.hpp"
 #include "framework/inference/segments/segment_inference.hpp"
 
 namespace twinmap::cli {

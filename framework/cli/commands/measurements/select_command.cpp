@@ -14,7 +14,7 @@
 #include "framework/diagnosis/held_out.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/structures.hpp"
-#include "framework/inference/inference_source.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
 namespace twinmap::cli {

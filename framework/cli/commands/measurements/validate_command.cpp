@@ -9,7 +9,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/held_out.hpp"
-#include "framework/inference/inference_source.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
 namespace twinmap::cli {

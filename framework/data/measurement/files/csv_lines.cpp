@@ -1,6 +1,6 @@
 #include "framework/data/measurement/files/csv_lines.hpp"
 
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 
 namespace twinmap {
 

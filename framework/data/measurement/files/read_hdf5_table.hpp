@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 
 namespace twinmap {
 

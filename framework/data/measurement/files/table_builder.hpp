@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 
 namespace twinmap {
 

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/measurement.hpp"
-#include "framework/data/measurement/recording/row_order.hpp"
+#include "framework/data/measurement/row_order.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/measurement_spec.hpp"
 #include "framework/simulation/response_layout.hpp"

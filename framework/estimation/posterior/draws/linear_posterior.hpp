@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "framework/estimation/posterior/misfit_surface.hpp"
+#include "framework/estimation/posterior/basins/misfit_surface.hpp"
 #include "kernels/sampling/box_mixture.hpp"
 
 namespace twinmap {

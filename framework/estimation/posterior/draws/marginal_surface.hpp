@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
 
 namespace twinmap {
 

@@ -7,12 +7,12 @@
 
 #include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/base/random/standard_normal.hpp"
+#include "framework/estimation/posterior/basins/straight_ridge.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/draws/local_walk.hpp"
 #include "framework/estimation/posterior/draws/marginal_surface.hpp"
 #include "framework/estimation/posterior/draws/randomized_minima.hpp"
 #include "framework/estimation/posterior/draws/valley_places.hpp"
-#include "framework/estimation/posterior/straight_ridge.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

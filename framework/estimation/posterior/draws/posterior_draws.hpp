@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "framework/estimation/posterior/valley.hpp"
+#include "framework/estimation/posterior/basins/valley.hpp"
 #include "framework/estimation/ridges/sum_coordinates.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 

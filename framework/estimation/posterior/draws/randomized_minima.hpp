@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
 #include "kernels/sampling/adaptive_importance.hpp"
 
 namespace twinmap {

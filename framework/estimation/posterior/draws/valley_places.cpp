@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "framework/estimation/posterior/search_team.hpp"
+#include "framework/estimation/posterior/basins/search_team.hpp"
 
 namespace twinmap {
 

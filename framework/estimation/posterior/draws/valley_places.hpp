@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
 
 namespace twinmap {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/estimation/posterior/noise/noise_hypothesis.hpp"
-#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/estimation/refined/refinement_model.hpp"
 
 namespace twinmap {

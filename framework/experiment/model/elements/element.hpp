@@ -4,8 +4,8 @@
 #include <optional>
 #include <type_traits>
 
-#include "framework/experiment/model/algebra.hpp"
-#include "framework/experiment/model/body_spec.hpp"
+#include "framework/experiment/expression/algebra.hpp"
+#include "framework/experiment/model/elements/frame_spec.hpp"
 #include "kernels/lanes/program/real.hpp"
 
 // What force elements are made of. An element is a template over its scalar S: over Expression it is what the

@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "framework/models/fmu/instance/failure.hpp"
 #include "framework/models/fmu/instance/value_group.hpp"
-#include "framework/models/fmu/run/failure.hpp"
 
 namespace twinmap::fmi {
 

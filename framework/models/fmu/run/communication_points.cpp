@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/models/fmu/run/failure.hpp"
+#include "framework/models/fmu/instance/failure.hpp"
 
 namespace twinmap::fmi {
 namespace {

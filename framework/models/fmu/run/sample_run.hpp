@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/models/fmu/run/failure.hpp"
+#include "framework/models/fmu/instance/failure.hpp"
 #include "framework/models/fmu/run/run_setting.hpp"
 #include "framework/simulation/excitation/excitation.hpp"
 #include "framework/simulation/integration/make_hybrid_stepper.hpp"

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "framework/experiment/expression/named_values.hpp"
-#include "framework/models/mechanism/equations/element_values.hpp"
+#include "framework/models/mechanism/element_values.hpp"
 #include "framework/models/mechanism/equations/system_values.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 

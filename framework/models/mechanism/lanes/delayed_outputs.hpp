@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "framework/models/mechanism/lanes/single_program.hpp"
+#include "framework/models/mechanism/single_program.hpp"
 #include "kernels/lanes/problem.hpp"
 #include "kernels/lanes/sample.hpp"
 

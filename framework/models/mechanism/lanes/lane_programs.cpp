@@ -1,6 +1,6 @@
 #include "framework/models/mechanism/lanes/lane_programs.hpp"
 
-#include "framework/models/mechanism/compare_with_simbody.hpp"
+#include "framework/models/mechanism/lanes/compare_with_simbody.hpp"
 #include "framework/models/mechanism/lanes/motion_checks.hpp"
 #include "framework/models/mechanism/loops/make_loop_model.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"

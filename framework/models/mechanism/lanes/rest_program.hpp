@@ -2,7 +2,7 @@
 
 #include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/lane_model.hpp"
-#include "framework/models/mechanism/lanes/single_program.hpp"
+#include "framework/models/mechanism/single_program.hpp"
 
 namespace twinmap {
 

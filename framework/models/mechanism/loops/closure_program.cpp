@@ -9,7 +9,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
 #include "framework/models/mechanism/equations/constrained_motion.hpp"
-#include "framework/models/mechanism/lanes/recording/recorded_parameters.hpp"
+#include "framework/models/mechanism/recorded_parameters.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 #include "kernels/linalg/decompositions.hpp"
 

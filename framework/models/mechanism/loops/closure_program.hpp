@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/models/mechanism/lanes/single_program.hpp"
 #include "framework/models/mechanism/loops/loop_model.hpp"
+#include "framework/models/mechanism/single_program.hpp"
 
 namespace twinmap {
 

@@ -8,9 +8,9 @@
 #include "framework/base/log/log.hpp"
 #include "framework/estimation/surrogate/forward_samples.hpp"
 #include "framework/estimation/surrogate/train_surrogate.hpp"
+#include "framework/experiment/files/resolve_defaults.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
-#include "framework/experiment/resolve_defaults.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 #include "framework/study/pipeline/training/train_surrogate_map.hpp"
 
 namespace twinmap {

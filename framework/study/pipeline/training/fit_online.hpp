@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "framework/estimation/trained/online_model.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 
 namespace twinmap {
 

@@ -7,7 +7,7 @@
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/store/samples_file.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 
 namespace twinmap {
 

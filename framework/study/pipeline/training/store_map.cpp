@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/store/trained_file.hpp"
 

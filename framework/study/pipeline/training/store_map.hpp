@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "framework/study/pipeline/study.hpp"
+#include "framework/study/pipeline/preparation/study.hpp"
 #include "framework/study/pipeline/training/trained_map.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include "framework/data/features/labelled_features.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/results/run_summary.hpp"
-#include "framework/study/pipeline/study.hpp"
+#include "framework/study/pipeline/preparation/study.hpp"
 
 namespace twinmap {
 

@@ -2,7 +2,7 @@
 
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "framework/results/run_summary.hpp"
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 
 namespace twinmap {
 

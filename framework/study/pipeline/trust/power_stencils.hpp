@@ -4,7 +4,7 @@
 
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/estimation/trained/online_model.hpp"
-#include "framework/study/pipeline/simulated_sets.hpp"
+#include "framework/study/pipeline/preparation/simulated_sets.hpp"
 
 namespace twinmap {
 

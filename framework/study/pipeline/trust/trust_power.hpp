@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 #include "framework/study/pipeline/trust/power_stencils.hpp"
 
 namespace twinmap {

@@ -1,4 +1,4 @@
-#include "framework/data/measurement/available_response.hpp"
+#include "framework/data/measurement/recording/available_response.hpp"
 
 #include <gtest/gtest.h>
 

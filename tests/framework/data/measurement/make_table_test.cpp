@@ -1,4 +1,4 @@
-#include "framework/data/measurement/make_table.hpp"
+#include "framework/data/measurement/files/make_table.hpp"
 
 #include <gtest/gtest.h>
 

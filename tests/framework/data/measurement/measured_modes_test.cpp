@@ -5,7 +5,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "framework/data/measurement/available_response.hpp"
+#include "framework/data/measurement/recording/available_response.hpp"
 #include "framework/data/noise/noise.hpp"
 
 namespace twinmap {

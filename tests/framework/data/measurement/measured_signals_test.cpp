@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/data/measurement/files/read_table.hpp"
 #include "tests/framework/test_folder.hpp"
 
 namespace twinmap {

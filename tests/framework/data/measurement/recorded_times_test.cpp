@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "framework/data/features/experiment_features.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

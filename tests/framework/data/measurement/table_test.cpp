@@ -1,4 +1,4 @@
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 
 #include <gtest/gtest.h>
 #include <matio.h>
@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "framework/base/hdf5/hdf5_file.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
 #include "tests/framework/test_folder.hpp"
 
 namespace twinmap {

@@ -4,9 +4,9 @@
 
 #include "framework/base/random/random.hpp"
 #include "framework/data/reduction/reduced_simulator.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 
 namespace twinmap {
 namespace {

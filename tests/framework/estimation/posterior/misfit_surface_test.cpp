@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/misfit_surface.hpp"
+#include "framework/estimation/posterior/basins/misfit_surface.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/residual_test.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 
 #include <gtest/gtest.h>
 

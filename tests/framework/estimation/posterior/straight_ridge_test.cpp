@@ -1,4 +1,4 @@
-#include "framework/estimation/posterior/straight_ridge.hpp"
+#include "framework/estimation/posterior/basins/straight_ridge.hpp"
 
 #include <gtest/gtest.h>
 

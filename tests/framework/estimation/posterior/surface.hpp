@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/estimation/posterior/basin_search.hpp"
+#include "framework/estimation/posterior/basins/basin_search.hpp"
 #include "framework/estimation/refined/misfit.hpp"
 #include "tests/framework/estimation/refined/problem.hpp"
 

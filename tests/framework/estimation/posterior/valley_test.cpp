@@ -1,9 +1,9 @@
-#include "framework/estimation/posterior/valley.hpp"
+#include "framework/estimation/posterior/basins/valley.hpp"
 
 #include <gtest/gtest.h>
 
+#include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
-#include "framework/estimation/posterior/search_team.hpp"
 #include "tests/framework/estimation/posterior/surface.hpp"
 
 namespace twinmap {

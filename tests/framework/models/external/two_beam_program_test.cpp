@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/data/sensitivity/stencil_simulator.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/models/external/program_simulator.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "tests/framework/models/mechanism/two_beam.hpp"

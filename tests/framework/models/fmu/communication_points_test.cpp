@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/models/fmu/run/failure.hpp"
+#include "framework/models/fmu/instance/failure.hpp"
 
 namespace twinmap::fmi {
 namespace {

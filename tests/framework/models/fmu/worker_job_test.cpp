@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/experiment/fields/read_value.hpp"
+#include "framework/experiment/tree/read_value.hpp"
 #include "tests/framework/models/fmu/fmu_case.hpp"
 
 namespace twinmap::testing {

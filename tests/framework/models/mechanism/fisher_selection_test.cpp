@@ -5,8 +5,8 @@
 
 #include "framework/data/reduction/selections.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 #include "tests/framework/models/mechanism/two_beam.hpp"
 #include "tests/lu.hpp"
 

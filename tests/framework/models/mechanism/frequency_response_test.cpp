@@ -5,8 +5,8 @@
 #include <complex>
 
 #include "framework/data/features/feature_extractor.hpp"
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 #include "framework/simulation/excitation/calc_input_signals.hpp"
 
 namespace twinmap {

@@ -5,7 +5,7 @@
 
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/mechanism/compare_with_simbody.hpp"
+#include "framework/models/mechanism/lanes/compare_with_simbody.hpp"
 #include "framework/simulation/sample_generator.hpp"
 #include "tests/framework/models/mechanism/random_trees.hpp"
 #include "tests/framework/models/mechanism/two_beam.hpp"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/models/mechanism/multibody_simulator.hpp"
+#include "framework/models/mechanism/simulator/multibody_simulator.hpp"
 #include "tests/framework/models/mechanism/model_builder.hpp"
 
 namespace twinmap::testing {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "framework/study/pipeline/prepare_data.hpp"
+#include "framework/study/pipeline/preparation/prepare_data.hpp"
 
 namespace twinmap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/study/samples/model_store.hpp"
 
 namespace twinmap {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 
 namespace twinmap {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/data/features/feature_extractor.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "framework/study/sweep/case_cost.hpp"
 #include "framework/study/sweep/plan.hpp"
 

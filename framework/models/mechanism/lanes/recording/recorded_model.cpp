@@ -7,7 +7,7 @@
 #include "framework/models/mechanism/equations/outputs.hpp"
 #include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/recording/controller_rest.hpp"
-#include "framework/models/mechanism/lanes/recording/recorded_parameters.hpp"
+#include "framework/models/mechanism/recorded_parameters.hpp"
 #include "framework/models/mechanism/sampled_keys.hpp"
 #include "kernels/lanes/program/differentiate.hpp"
 

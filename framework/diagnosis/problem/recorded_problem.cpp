@@ -1,0 +1,356 @@
+#include "framework/diagnosis/problem/recorded_problem.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "framework/data/features/experiment_features.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
+#include "framework/data/measurement/measured_signals.hpp"
+#include "framework/diagnosis/candidates/term_candidates.hpp"
+#include "framework/estimation/posterior/basins/search_team.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// With more unknown parameters than these, those of single recordings are integrated out (JointInferrer).
+constexpr Index kMaxDrawnParameters = 8;
+
+/// A trial with what simulates it around a point.
+struct TrialMisfit {
+  TrialMisfit(const MeasuredTrial& trial)
+      : box(trial.model->getUnknown(), {0, static_cast<Index>(trial.model->getUnknown().size())}, trial.held),
+        misfit(*trial.simulator, *trial.model, box, trial.features) {}
+
+  const SearchBox box;
+  Misfit misfit;
+};
+
+/// Where residuals are no neighbours in time of those before them.
+void addStarts(const RefinementModel& model, Index first, std::vector<Index>& starts) {
+  const std::vector<FeatureInfo>& infos = model.getExtractor().getInfos();
+  const std::vector<Index>& features = model.getWhole().features;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const FeatureInfo& info = infos[static_cast<std::size_t>(features[i])];
+    const FeatureInfo* before = i > 0 ? &infos[static_cast<std::size_t>(features[i - 1])] : nullptr;
+    if (before == nullptr || before->output != info.output || before->time >= info.time) {
+      starts.push_back(first + static_cast<Index>(i));
+    }
+  }
+}
+
+using Simulators = std::vector<std::unique_ptr<const SimulatorRefiner>>;
+
+/// Which simulator each recording has: that of its trial, or one with its own excitation.
+std::vector<std::size_t> assignSimulators(const ExperimentSpec& experiment,
+                                          const RecordedFeatures& recordings, Simulators& simulators) {
+  std::vector<std::size_t> assigned;
+  std::map<std::size_t, std::size_t> of_trials;
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    const bool has_own = !recordings.excitations.empty() && !recordings.excitations[k].empty();
+    const auto known = of_trials.find(recordings.getTrial(k));
+    if (!has_own && known != of_trials.end()) {
+      assigned.push_back(known->second);
+      continue;
+    }
+    assigned.push_back(simulators.size());
+    ExperimentSpec own = recordings.getExperiment(experiment, k);
+    if (has_own) {
+      copyMeasuredSignals(recordings.excitations[k], own.model);
+    } else {
+      of_trials[recordings.getTrial(k)] = simulators.size();
+    }
+    simulators.push_back(std::make_unique<const SimulatorRefiner>(own, recordings.getLayout(k)));
+    simulators.back()->requireNoise();
+  }
+  return assigned;
+}
+
+/// What a recording's own unknown parameter is called among those of all.
+std::string nameOwn(const std::string& name, const ExperimentSpec& experiment,
+                    const RecordedFeatures& recordings, std::size_t k) {
+  const std::string own =
+      recordings.trials.empty() ? name : nameInTrial(experiment.trials[recordings.trials[k]].name, name);
+  const bool is_one_of_several =
+      recordings.trials.empty()
+          ? recordings.features.size() > 1
+          : std::count(recordings.trials.begin(), recordings.trials.end(), recordings.trials[k]) > 1;
+  return is_one_of_several ? own + "[" + std::to_string(k + 1) + "]" : own;
+}
+
+PosteriorProblem makeRecordedProblem(const Simulators& simulators, const std::vector<std::size_t>& assigned,
+                                     const ExperimentSpec& experiment, const RecordedFeatures& recordings) {
+  PosteriorProblem problem;
+  problem.unknown = experiment.model.parameters;
+  problem.priors = experiment.model.priors;
+  const std::size_t shared = problem.unknown.size();
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    const SimulatorRefiner& simulator = *simulators[assigned[k]];
+    const std::vector<ParameterSpec>& own = simulator.getUnknown();
+    MeasuredTrial trial = simulator.makeTrial(recordings.features[k], recordings.getKnown(k));
+    for (std::size_t j = shared; j < own.size(); ++j) {
+      trial.unknown[j] = static_cast<Index>(problem.unknown.size());
+      problem.unknown.push_back(own[j]);
+      problem.unknown.back().name.text = nameOwn(own[j].name.text, experiment, recordings, k);
+    }
+    problem.trials.push_back(std::move(trial));
+  }
+  const auto all = static_cast<Index>(problem.unknown.size());
+  problem.drawn =
+      recordings.features.size() == 1 || all <= kMaxDrawnParameters ? all : static_cast<Index>(shared);
+  return problem;
+}
+
+/// Of one recording after the other.
+std::vector<std::size_t> countOutputs(const RecordedFeatures& recordings) {
+  std::vector<std::size_t> counts;
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    counts.push_back(recordings.getLayout(k).getOutputCount());
+  }
+  return counts;
+}
+
+std::vector<std::optional<double>> listWindows(const std::vector<double>& starts) {
+  std::vector<std::optional<double>> windows(starts.begin(), starts.end());
+  if (windows.empty()) {
+    windows.emplace_back(std::nullopt);
+  }
+  return windows;
+}
+
+/// Setups of all trials, no recordings yet.
+RecordedFeatures setUpTrials(const ExperimentSpec& combined, const std::vector<KnownValue>& known) {
+  RecordedFeatures recordings;
+  for (const TrialExperiment& trial : combined.trials) {
+    recordings.setups.push_back(
+        {makeLayout(trial.experiment), collectKnown(trial.experiment.model.inputs, known)});
+  }
+  return recordings;
+}
+
+std::size_t findTrial(const ExperimentSpec& combined, const std::string& name) {
+  std::vector<std::string> names;
+  for (const TrialExperiment& trial : combined.trials) {
+    if (trial.name == name) {
+      return names.size();
+    }
+    names.push_back(trial.name);
+  }
+  throwUnknownTrial(name, names);
+}
+
+/// The recording behind those that are there, of a trial.
+void appendOfTrial(const RecordedFeatures& one, std::size_t trial, RecordedFeatures& recordings) {
+  recordings.features.push_back(one.features.front());
+  recordings.excitations.push_back(one.excitations.empty() ? std::vector<SignalSpec>()
+                                                           : one.excitations.front());
+  recordings.trials.push_back(trial);
+}
+
+}  // namespace
+
+RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& recordings) const {
+  RecordedFeatures selected{layout, {}, known, {}, setups};
+  for (const std::size_t k : recordings) {
+    if (!trials.empty()) {
+      selected.trials.push_back(trials[k]);
+    }
+    selected.features.push_back(features[k]);
+    if (!excitations.empty()) {
+      selected.excitations.push_back(excitations[k]);
+    }
+  }
+  return selected;
+}
+
+RecordedFeatures RecordedFeatures::leaveOut(std::size_t recording) const {
+  std::vector<std::size_t> others;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    if (k != recording) {
+      others.push_back(k);
+    }
+  }
+  return select(others);
+}
+
+std::vector<std::string> RecordedFeatures::listOutputs(const ExperimentSpec& experiment) const {
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < features.size(); ++k) {
+    for (const std::string& name : getLayout(k).output_names) {
+      names.push_back(trials.empty() ? name : nameInTrial(experiment.trials[trials[k]].name, name));
+    }
+  }
+  return names;
+}
+
+void append(const RecordedFeatures& more, RecordedFeatures& recordings) {
+  recordings.features.insert(recordings.features.end(), more.features.begin(), more.features.end());
+  recordings.excitations.insert(recordings.excitations.end(), more.excitations.begin(),
+                                more.excitations.end());
+  if (!recordings.excitations.empty() && recordings.excitations.size() < recordings.features.size()) {
+    throw MeasurementError("some recordings have a column of the measured excitation, and others have not");
+  }
+}
+
+RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
+                               std::optional<double> start, const VectorXd& known) {
+  RecordedFeatures recording{reader.getLayout(), {}, known};
+  std::optional<MeasurementReader> own;
+  const double duration = reader.getExperiment().model.simulation.duration;
+  if (std::optional<ExperimentSpec> followed =
+          reader.followExcitation(table, start, kDelayMargin * duration)) {
+    recording.excitations.push_back(followed->model.excitation);
+    own.emplace(std::move(*followed));
+  }
+  AvailableFeatures found = (own ? *own : reader).readAvailableFeatures(table, start);
+  requireNoneStated(found.stated, table.source);
+  recording.features.push_back(std::move(found.features));
+  return recording;
+}
+
+RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
+                                const std::vector<double>& starts, const std::vector<KnownValue>& known) {
+  RecordedFeatures recordings{
+      reader.getLayout(), {}, collectKnown(reader.getExperiment().model.inputs, known)};
+  const std::vector<std::optional<double>> windows = listWindows(starts);
+  for (const std::string& file : files) {
+    const Table table = readTable(file, reader.listColumns(), MissingCells::kKeep);
+    for (const std::optional<double>& start : windows) {
+      append(readRecording(reader, table, start, recordings.known), recordings);
+    }
+  }
+  return recordings;
+}
+
+RecordedFeatures readTrials(const ExperimentSpec& combined, const std::vector<TrialFile>& files,
+                            const std::vector<double>& starts, const std::vector<KnownValue>& known) {
+  RecordedFeatures recordings = setUpTrials(combined, known);
+  for (const TrialFile& one : files) {
+    const std::size_t trial = findTrial(combined, one.trial);
+    const MeasurementReader reader(combined.trials[trial].experiment);
+    const Table table = readTable(one.file, reader.listColumns(), MissingCells::kKeep);
+    for (const std::optional<double>& start : listWindows(starts)) {
+      appendOfTrial(readRecording(reader, table, start, recordings.setups[trial].known), trial, recordings);
+    }
+  }
+  return recordings;
+}
+
+RecordedFeatures makeEmptyRecordings(const ExperimentSpec& experiment, const std::vector<KnownValue>& known) {
+  const auto makeEmpty = [](const ExperimentSpec& one, const ResponseLayout& layout) -> VectorXd {
+    return VectorXd::Zero(makeExtractor(one, layout).getFeatureCount());
+  };
+  if (experiment.trials.empty()) {
+    const ResponseLayout layout = makeLayout(experiment);
+    return {layout, {makeEmpty(experiment, layout)}, collectKnown(experiment.model.inputs, known)};
+  }
+  RecordedFeatures recordings = setUpTrials(experiment, known);
+  for (std::size_t t = 0; t < experiment.trials.size(); ++t) {
+    recordings.features.push_back(makeEmpty(experiment.trials[t].experiment, recordings.setups[t].layout));
+    recordings.trials.push_back(t);
+  }
+  return recordings;
+}
+
+SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                              const VectorXd& point, std::size_t k) {
+  const auto p = static_cast<Index>(experiment.model.parameters.size());
+  Index before = p;
+  for (std::size_t i = 0; i < k; ++i) {
+    before += static_cast<Index>(recordings.getExperiment(experiment, i).model.nuisance.size());
+  }
+  SingleRecording single{recordings.getExperiment(experiment, k), recordings.select({k}), {}};
+  single.recording.layout = recordings.getLayout(k);
+  single.recording.known = recordings.getKnown(k);
+  single.recording.setups.clear();
+  single.recording.trials.clear();
+  const auto own = static_cast<Index>(single.experiment.model.nuisance.size());
+  single.point.resize(p + own);
+  single.point << point.head(p), point.segment(before, own);
+  return single;
+}
+
+RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
+    : outputs_(countOutputs(recordings)) {
+  const std::vector<std::size_t> assigned = assignSimulators(experiment, recordings, simulators_);
+  problem_ = makeRecordedProblem(simulators_, assigned, experiment, recordings);
+}
+
+std::vector<FeatureInfo> RecordingsProblem::listInfos() const {
+  std::vector<FeatureInfo> infos;
+  int before = 0;
+  for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
+    const RefinementModel& model = *problem_.trials[k].model;
+    for (const Index i : model.getWhole().features) {
+      infos.push_back(model.getExtractor().getInfos()[static_cast<std::size_t>(i)]);
+      if (infos.back().output >= 0) {
+        infos.back().output += before;
+      }
+    }
+    before += static_cast<int>(outputs_[k]);
+  }
+  return infos;
+}
+
+LinearizedRecordings RecordingsProblem::linearize(const VectorXd& point) const {
+  LinearizedRecordings all;
+  const auto u = static_cast<Index>(getUnknown().size());
+  for (const MeasuredTrial& trial : problem_.trials) {
+    TrialMisfit own(trial);
+    const VectorXd at = own.box.normalize(point(trial.unknown));
+    const LocalMisfit local = own.misfit.linearize(at);
+    if (!local.status.ok) {
+      throw std::runtime_error("the best fit cannot be simulated with its derivatives: " +
+                               local.status.reason);
+    }
+    const Index before = all.residual.size(), count = local.residual.size();
+    all.residual.conservativeResize(before + count);
+    all.residual.tail(count) = local.residual;
+    all.jacobian.conservativeResize(before + count, u);
+    all.jacobian.bottomRows(count).setZero();
+    all.jacobian.bottomRows(count)(Eigen::all, trial.unknown) =
+        local.jacobian * own.box.getHalfWidths().cwiseInverse().asDiagonal();
+    addStarts(*trial.model, before, all.starts);
+  }
+  return all;
+}
+
+RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
+  const LogCoordinates coordinates(getUnknown());
+  const Prior prior(getUnknown(), problem_.priors);
+  std::vector<std::unique_ptr<TrialMisfit>> own;
+  std::vector<MeasuredPart> parts;
+  for (const MeasuredTrial& trial : problem_.trials) {
+    own.push_back(std::make_unique<TrialMisfit>(trial));
+    parts.push_back({&own.back()->misfit, trial.model, trial.unknown});
+  }
+  MisfitSurface surface(std::move(parts), coordinates, prior);
+  MatrixXd from(starts.rows(), starts.cols());
+  for (Index i = 0; i < starts.cols(); ++i) {
+    from.col(i) = coordinates.fromParameters(starts.col(i));
+  }
+  SearchTeam team(surface, from);
+  team.run(BasinSearchOptions{}.max_iterations);
+  RecordingFit best;
+  for (const LocalSurface& end : team.listEnds()) {
+    if (best.point.size() == 0 || end.chi_square < best.chi_square) {
+      best = {coordinates.toParameters(end.at), end.chi_square};
+    }
+  }
+  return best;
+}
+
+VectorXd insertAdded(const VectorXd& point, Index p, const VectorXd& added) {
+  VectorXd whole(point.size() + added.size());
+  whole << point.head(p), added, point.tail(point.size() - p);
+  return whole;
+}
+
+}  // namespace twinmap

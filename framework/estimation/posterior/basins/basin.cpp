@@ -1,0 +1,57 @@
+#include "framework/estimation/posterior/basins/basin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// In standard deviations of the basin.
+double calcDistance(const Basin& basin, const VectorXd& at) {
+  const VectorXd apart = at - basin.local.at;
+  return std::sqrt(apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)));
+}
+
+}  // namespace
+
+bool liesIn(const Basin& basin, const VectorXd& at) {
+  return calcDistance(basin, at) < kBasinReach;
+}
+
+MatrixXd calcBasinCovariance(const MatrixXd& information) {
+  const Index u = information.rows();
+  return linalg::solveCholesky(
+      linalg::calcCholesky(information + kHalfWidthInformation * MatrixXd::Identity(u, u)).lower,
+      MatrixXd::Identity(u, u));
+}
+
+std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
+  constexpr std::size_t kMax = 12;
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
+  std::vector<Basin> basins;
+  for (LocalSurface& end : ends) {
+    if (end.misfit > ends.front().misfit + kBasinAbove) {
+      break;
+    }
+    const auto known =
+        std::find_if(basins.begin(), basins.end(), [&](const Basin& basin) { return liesIn(basin, end.at); });
+    if (known != basins.end()) {
+      ++known->searches;
+    } else if (basins.size() < kMax) {
+      MatrixXd covariance = calcBasinCovariance(end.information);
+      basins.push_back({end, std::move(covariance), 1});
+    }
+  }
+  return basins;
+}
+
+}  // namespace twinmap

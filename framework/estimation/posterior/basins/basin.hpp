@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/estimation/posterior/basins/misfit_surface.hpp"
+
+namespace twinmap {
+
+/// More unknown parameters than these are searched for and drawn by means of the prior: no mixture follows so
+/// many dimensions, and no starts cover them.
+constexpr Eigen::Index kManyUnknown = 16;
+
+/// A minimum of chi-square within the bounds.
+struct Basin {
+  LocalSurface local;
+  Eigen::MatrixXd covariance;  ///< u x u: of the linear model, with the box as a normal distribution
+  int searches = 0;            ///< that ended in it
+};
+
+/// Of chi-square, between the best basin and others: for the same volume they bear a share of 4e-6.
+constexpr double kBasinAbove = 25.0;
+
+constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
+
+/// Whether a point is within kBasinReach standard deviations of a basin's minimum.
+bool liesIn(const Basin& basin, const Eigen::VectorXd& at);
+
+/// (information + that of the box as a normal distribution)^-1, u x u.
+Eigen::MatrixXd calcBasinCovariance(const Eigen::MatrixXd& information);
+
+/// The ends of searches that may bear some of the posterior, at most 25 above the best and 12 of them, each
+/// basin once: an end within three standard deviations of a better one is in its basin.
+std::vector<Basin> collectBasins(std::vector<LocalSurface> ends);
+
+}  // namespace twinmap

@@ -1,0 +1,191 @@
+#include "framework/inference/measurement/direct_inference.hpp"
+
+#include <algorithm>
+
+#include "framework/base/log/search_stage.hpp"
+#include "framework/base/text/source_location.hpp"
+#include "framework/data/measurement/recording/recorded_times.hpp"
+#include "framework/experiment/check/unused_parameters.hpp"
+#include "framework/inference/clock/clock_search.hpp"
+#include "framework/inference/derived_values.hpp"
+#include "framework/inference/measurement/measurement_faults.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/simulation/team_simulator.hpp"
+
+namespace twinmap {
+namespace {
+
+/// Of experiments that differ by the times of samples at most.
+bool areSame(const std::vector<FeatureSpec>& features, const std::vector<FeatureSpec>& others) {
+  if (!areSamples(features) || !areSamples(others)) {
+    return true;
+  }
+  return std::equal(features.begin(), features.end(), others.begin(), others.end(),
+                    [](const FeatureSpec& feature, const FeatureSpec& other) {
+                      const auto &a = std::get<SamplesFeatureSpec>(feature),
+                                 &b = std::get<SamplesFeatureSpec>(other);
+                      return a.outputs.front().text == b.outputs.front().text && a.start == b.start &&
+                             a.interval == b.interval && a.count == b.count;
+                    });
+}
+
+/// Of experiments that differ by their measured tables at most.
+bool areSame(const std::vector<SignalSpec>& signals, const std::vector<SignalSpec>& others) {
+  const auto same_table = [](const TableSpec& table, const TableSpec& other) {
+    return table.times == other.times && table.values == other.values;
+  };
+  return std::equal(signals.begin(), signals.end(), others.begin(), others.end(),
+                    [&](const SignalSpec& signal, const SignalSpec& other) {
+                      return std::equal(signal.tables.begin(), signal.tables.end(), other.tables.begin(),
+                                        other.tables.end(), same_table);
+                    });
+}
+
+/// One measurement is inferred at a time: all threads simulate for it.
+std::unique_ptr<Simulator> makeShared(const MeasurementReader& reader, SimulatorRefiner::Model model) {
+  const ModelSpec& spec = reader.getExperiment().model;
+  const ResponseLayout& layout = reader.getLayout();
+  return shareAmongThreads(model == SimulatorRefiner::Model::kTrusted
+                               ? makeTrustedSimulator(spec, layout.times, layout.modes)
+                               : makeSimulator(spec, layout.times, layout.modes));
+}
+
+}  // namespace
+
+/// An inference whose features are at the times of a table, and whose excitation is the table's.
+struct DirectInference::LikeRecording {
+  LikeRecording(ExperimentSpec experiment, const SimulatorPosteriorOptions& options)
+      : reader(std::move(experiment)),
+        inference(reader, options.draws, SimulatorRefiner::Model::kTrusted, options.profiles) {}
+
+  const MeasurementReader reader;
+  DirectInference inference;
+};
+
+DirectInference::~DirectInference() = default;
+
+DirectInference::DirectInference(const MeasurementReader& reader, int draws, SimulatorRefiner::Model model,
+                                 bool profiles)
+    : reader_(reader),
+      simulator_(reader.getExperiment(), reader.getLayout(), makeShared(reader, model)),
+      options_(makePosteriorOptions(reader.getExperiment(), draws)),
+      quantities_(makeDerivedQuantities(reader.getExperiment())),
+      prior_(findStatedPrior(reader.getExperiment().model)),
+      unused_(listUnused(reader.getExperiment(), "parameters")) {
+  options_.profiles = profiles;
+  simulator_.requireNoise();
+}
+
+InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
+                                           const Eigen::VectorXd& known) {
+  if (LikeRecording* followed = follow(table, start)) {
+    InferredMeasurement inferred =
+        followed->inference.infer(table, start, followed->reader.readAvailableFeatures(table, start), known);
+    if (!areSame(followed->reader.getExperiment().features, reader_.getExperiment().features)) {
+      inferred.remarks.emplace_back(
+          "features are taken at the times of the recording, between which nothing is interpolated");
+    }
+    return inferred;
+  }
+  const AvailableFeatures found = reader_.readAvailableFeatures(table, start);
+  reader_.warnOfInterpolation(table, start);
+  return infer(table, start, found, known);
+}
+
+DirectInference::LikeRecording* DirectInference::follow(const Table& table, std::optional<double> start) {
+  std::optional<ExperimentSpec> experiment = reader_.follow(table, start);
+  if (!experiment) {
+    return nullptr;
+  }
+  const ExperimentSpec* last = followed_ ? &followed_->reader.getExperiment() : nullptr;
+  if (last == nullptr || !areSame(last->features, experiment->features) ||
+      !areSame(last->model.excitation, experiment->model.excitation)) {
+    followed_ = std::make_unique<LikeRecording>(std::move(*experiment), options_);
+  }
+  return followed_.get();
+}
+
+InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
+                                           const AvailableFeatures& found, const Eigen::VectorXd& known) {
+  std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
+  if (found.stated.isGiven()) {
+    own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(),
+                found.stated);
+  }
+  const SimulatorRefiner& simulator = own ? *own : simulator_;
+  InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);
+  inferred.source = table.source;
+  inferred.start = reader_.getStart(table, start);
+  inferred.left_out = found.remarks;
+  if (tryClock(found, known, inferred)) {
+    return inferred;
+  }
+  inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
+  return inferred;
+}
+
+bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                               InferredMeasurement& inferred) const {
+  constexpr Eigen::Index kFewest = 20;  // samples, of which a clock can be told
+  const ExperimentSpec& experiment = reader_.getExperiment();
+  const std::vector<std::string> statuses = listStatuses(inferred);
+  if (statuses.empty() || statuses.front() != toString(TrustStatus::kModelMismatch) || !inferred.posterior ||
+      !inferred.posterior->fit || !inferred.posterior->fit->isSimulated() || found.stated.isGiven() ||
+      experiment.model.source || !areSamples(experiment.features) || !simulator_.samplesFast() ||
+      static_cast<Eigen::Index>(found.available.size()) < kFewest) {
+    return false;
+  }
+  const SearchStage stage("does a fault of the clock explain it");
+  const NoiseHypothesis noise = simulator_.describeNoise(found.clipped);
+  std::optional<ClockedMeasurement> clocked =
+      findClockFaults({experiment, reader_.getLayout(), found.features, known, noise},
+                      inferred.posterior->fit->best, options_);
+  if (!clocked) {
+    return false;
+  }
+  inferred.trust.reset();
+  inferred.posterior = std::move(clocked->posterior);
+  inferred.clock_faults = std::move(clocked->faults);
+  inferred.ridges = clocked->simulator->findRidges(*inferred.posterior, known);
+  return true;
+}
+
+std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,
+                                           const Eigen::VectorXd& known,
+                                           const PosteriorEstimate& posterior) const {
+  const SimulatorFit& fit = *posterior.fit;
+  if (!fit.isSimulated() || fit.isPlausible()) {
+    return "";
+  }
+  const SearchStage stage("does a fault of the recording explain it");
+  const auto calcMisfit = [&](const Eigen::VectorXd& corrected) {
+    return simulator.findLeastChiSquare(simulator.getExtractor().extract(corrected), known,
+                                        static_cast<Eigen::Index>(found.available.size()));
+  };
+  return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
+}
+
+InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {
+  return infer(simulator_, features, known, {});
+}
+
+InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
+                                           const Eigen::VectorXd& known,
+                                           const std::vector<ClippedSample>& clipped) const {
+  InferredMeasurement inferred;
+  const std::string failure = simulator.findFailure(known);
+  if (!failure.empty()) {
+    inferred.posterior = simulator.makeFailed(features, known, failure);
+    inferred.quantities = quantities_;
+    return inferred;
+  }
+  inferred.posterior =
+      simulator.samplePosterior(features, known, simulator.describeNoise(clipped), {}, options_);
+  inferred.ridges = simulator.findRidges(*inferred.posterior, known);
+  inferred.quantities = quantities_;
+  inferred.prior = prior_;
+  inferred.unused = unused_;
+  return inferred;
+}
+
+}  // namespace twinmap
