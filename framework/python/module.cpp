@@ -5,6 +5,7 @@
 #include "framework/base/worker/worker_process.hpp"
 #include "framework/models/fmu/worker.hpp"
 #include "framework/python/bindings.hpp"
+#include "framework/simulation/simulator_team.hpp"
 
 PYBIND11_MODULE(_twinmap, module) {
   module.doc() = "The compiled part of the package twinmap";
@@ -16,6 +17,7 @@ PYBIND11_MODULE(_twinmap, module) {
       },
       "How processes are started that run_worker() is called in");
   module.def("run_worker", &twinmap::fmi::runWorker, "Simulates FMUs for another process; never returns");
+  module.def("get_default_threads", &twinmap::countThreads, "All cores, or OMP_NUM_THREADS");
   twinmap::python::bindErrors(module);
   twinmap::python::bindQuantity(module);
   twinmap::python::bindExperiment(module);

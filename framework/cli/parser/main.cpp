@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <iostream>
 #include <string>
-#include <thread>
 #include <twinmap/build_info.hpp>
 #include <utility>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/models/fmu/worker.hpp"
+#include "framework/simulation/simulator_team.hpp"
 
 namespace cli = twinmap::cli;
 
@@ -82,8 +82,7 @@ int runCommand(int count, char** arguments) {
   app.name("twinmap");  // in the help, wherever the program lies
   app.set_version_flag("--version", std::string("twinmap ") + twinmap::kVersion);
   app.require_subcommand(1);
-  const cli::Invocation invocation{joinArguments(count, arguments),
-                                   static_cast<int>(std::max(1U, std::thread::hardware_concurrency()))};
+  const cli::Invocation invocation{joinArguments(count, arguments), twinmap::countThreads()};
   cli::addExperimentCommands(app, invocation);
   cli::addMapCommands(app, invocation);
   cli::addDiagnosisCommands(app);

@@ -28,7 +28,9 @@ void addFailOnGates(CLI::App& command, bool& fail) {
 
 void addThreads(CLI::App& command, int& threads) {
   constexpr int kMaxThreads = 1024;
-  command.add_option("--threads", threads, "Threads (default: all cores); results do not depend on them")
+  command
+      .add_option("--threads", threads,
+                  "Threads (default: all cores, or OMP_NUM_THREADS); results do not depend on them")
       ->type_name("N")
       ->check(CLI::Range(1, kMaxThreads));
 }

@@ -7,16 +7,16 @@ import numpy as np
 import pandas as pd
 
 from ._errors import ExperimentError
-from ._twinmap import Quantity
+from ._twinmap import Quantity, get_default_threads
 
 PathLike = Union[str, "os.PathLike[str]"]
 Points = Union[np.ndarray, pd.DataFrame, Mapping[str, Any], Sequence[Any]]
 
 
 def choose_threads(threads: Optional[int]) -> int:
-    """All cores that this process may use, unless told otherwise."""
+    """All cores that this process may use, or OMP_NUM_THREADS, unless told otherwise."""
     if threads is None:
-        return len(os.sched_getaffinity(0))
+        return get_default_threads()
     if threads < 1:
         raise ValueError("threads: must be at least 1")
     return threads

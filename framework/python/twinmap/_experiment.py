@@ -167,7 +167,8 @@ class Experiment:
         where what is not named is at the centre of its bounds.
 
         noise: with the experiment's measurement noise, drawn by `seed` (the experiment's if None). A sample that fails
-        is NaN and says why. The result does not depend on the number of threads (all cores if None).
+        is NaN and says why. The result does not depend on the number of threads (all cores,
+        or OMP_NUM_THREADS, if None).
         """
         array = make_points(points, self.sampled, "points")
         rows, reasons = self._experiment.simulate(array, choose_threads(threads))

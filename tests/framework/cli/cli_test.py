@@ -623,6 +623,14 @@ class Run(TestCase):
         self.assertGreater(provenance["peak_memory_mb"], 1)
         self.assertEqual([p.name for p in (self.folder / "run").glob("*.tmp")], [])
 
+    def test_threads_are_those_of_openmp_by_default(self):
+        result = call(
+            *("run", TABLE1, *SMALL, NO_LIMIT, "--out", self.folder / "run"),
+            env={**os.environ, "OMP_NUM_THREADS": "3"},
+        )
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(json.loads((self.folder / "run/provenance.json").read_text())["threads"], 3)
+
 
 def jackknife(figure, values):
     without = [figure(values[:i] + values[i + 1 :]) for i in range(len(values))]

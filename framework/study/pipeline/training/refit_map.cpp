@@ -1,11 +1,9 @@
 #include "framework/study/pipeline/training/refit_map.hpp"
 
-#include <algorithm>
-#include <thread>
-
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/models/make_simulator.hpp"
+#include "framework/simulation/simulator_team.hpp"
 #include "framework/store/samples_file.hpp"
 #include "framework/study/pipeline/preparation/prepare_data.hpp"
 
@@ -21,7 +19,7 @@ GpMap refitExactMap(const std::filesystem::path& run, const ExperimentSpec& expe
       failIncompleteSamples(experiment, extractor, {std::move(stored.train), std::move(stored.test)});
   const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, sets.train.layout), experiment.seed);
   RunControl control;
-  control.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  control.threads = countThreads();
   const Study study{experiment, *simulator, extractor, noise, nullptr, run, control};
   const PreparedData data = prepareData(study, std::move(sets));
   return refitGpMap(deployed, *experiment.inverse_map.findProcesses(), experiment.transform,
