@@ -1,5 +1,5 @@
 """Broken experiments and recordings, drawn with a fixed seed: the first line that says what is wrong names the cause,
-each time. TWINMAP_BROKEN says how many (each kind once), TWINMAP_BROKEN_SEED which (2026); TWINMAP_BROKEN_SHOW prints the lines."""
+each time. TWINMAP_BROKEN says of how many (each kind once), TWINMAP_BROKEN_SEED which (2026); TWINMAP_BROKEN_SHOW prints the lines."""
 import os
 import random
 import re
@@ -21,6 +21,7 @@ from broken_inputs import (
 )
 from broken_machines import MACHINE_FAULTS
 from broken_tables import TABLE_FAULTS, TABLE_FILE_FAULTS, TWO_COLUMN_FAULTS
+from case_turns import take_turn
 from support import EXPERIMENTS, TWINMAP, FolderTestCase
 
 CART, BEAMS = MACHINES[:2]
@@ -127,8 +128,11 @@ class BrokenInputs(FolderTestCase):
         faults, drawn = self.list_faults(), []
         while len(drawn) < count:  # each once before any comes again
             drawn += generator.sample(faults, len(faults))
-        for number, (name, extension, break_one) in enumerate(drawn[:count]):
-            cause, arguments = break_one(generator, self.folder / f"{number}{extension}")
+        broken = [
+            (name, *break_one(generator, self.folder / f"{number}{extension}"))
+            for number, (name, extension, break_one) in enumerate(drawn[:count])
+        ]
+        for name, cause, arguments in take_turn(broken):
             result = self.run_command(*arguments)
             line = find_first_line(result)
             if "TWINMAP_BROKEN_SHOW" in os.environ:

@@ -6,11 +6,11 @@ import resource
 import shutil
 import subprocess
 import unittest
-from concurrent.futures import ThreadPoolExecutor
 
 import yaml
 
 import mutations
+from case_turns import count_turn, take_turn
 from support import EXPERIMENTS, TWINMAP, FolderTestCase
 
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
@@ -83,9 +83,8 @@ class MutatedExperiments(FolderTestCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.files = list(list_files())
-        with ThreadPoolExecutor(os.cpu_count()) as pool:
-            cls.checked = list(pool.map(cls.check, range(len(cls.files)), cls.files))
+        cls.files = take_turn(list_files())
+        cls.checked = [cls.check(number, file) for number, file in enumerate(cls.files)]
 
     @classmethod
     def check(cls, number, file):
@@ -113,7 +112,7 @@ class MutatedExperiments(FolderTestCase):
             self.assertIsNotNone(result, "took too long")
             self.assertIn(result.returncode, (0, 2), result.stderr)
 
-        self.assertGreater(self.for_each(test), 600)
+        self.assertGreater(self.for_each(test), count_turn(600))
 
     def test_refusals_name_place_and_rule(self):
         def test(_file, path, result):
@@ -134,7 +133,7 @@ class MutatedExperiments(FolderTestCase):
                 if given not in ([], {}):
                     self.assertTrue(is_same(given, look_up(resolved, path)), (path, given))
 
-        self.assertGreater(self.for_each(test, 0), 80)
+        self.assertGreater(self.for_each(test, 0), count_turn(80))
 
     def test_what_is_accepted_checks_as_itself(self):
         def test(_file, path, result):

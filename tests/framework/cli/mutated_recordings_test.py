@@ -1,11 +1,12 @@
 """Damaged recordings: each has an estimate that says what was left out, or an error that names the place; no crash, and
-nothing that is `ok` is more than 5 standard deviations from the truth. TWINMAP_MUTATIONS says how many (200),
+nothing that is `ok` is more than 5 standard deviations from the truth. TWINMAP_MUTATIONS says of how many (200),
 TWINMAP_MUTATION_SEED which (7)."""
 import json
 import os
 import random
 import unittest
 
+from case_turns import take_turn
 from support import EXPERIMENTS, FolderTestCase, call
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
@@ -88,6 +89,7 @@ class MutatedRecordings(FolderTestCase):
             names[str(path)], text = self.mutate(generator, lines)
             path.write_text(text)
             files.append(path)
+        files = take_turn(files)
         seen = 0
         for first in range(0, len(files), 100):
             result = call("infer", CART, "--json", *files[first : first + 100])

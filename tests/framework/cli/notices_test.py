@@ -25,14 +25,6 @@ def make_pattern(notice):
 
 
 class Notices(unittest.TestCase):
-    def run_script(self, script, folder):
-        environment = {**os.environ, "PATH": f"{Path(TWINMAP).parent}:{os.environ['PATH']}", "NO_COLOR": "1"}
-        result = subprocess.run(
-            ["bash", "-euo", "pipefail"], input=script, cwd=folder, env=environment, capture_output=True, text=True
-        )
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        return result.stdout + result.stderr
-
     def test_every_one_is_in_the_list_of_examples_and_no_other(self):
         self.assertEqual(set(EXAMPLES), set(NOTICES))
         for name, example in EXAMPLES.items():
@@ -57,6 +49,24 @@ class Notices(unittest.TestCase):
         self.assertEqual(call("explain", "model_mismath").returncode, 2)
 
 
+class Examples(unittest.TestCase):
+    def run_script(self, script, folder):
+        environment = {**os.environ, "PATH": f"{Path(TWINMAP).parent}:{os.environ['PATH']}", "NO_COLOR": "1"}
+        result = subprocess.run(
+            ["bash", "-euo", "pipefail"], input=script, cwd=folder, env=environment, capture_output=True, text=True
+        )
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        return result.stdout + result.stderr
+
+
+class Statuses(Examples):
+    """A test of each, added below."""
+
+
+class Warnings(Examples):
+    """A test of each, added below."""
+
+
 def add_example(name, example):
     def test(self):
         pattern = make_pattern(NOTICES[name])
@@ -66,11 +76,11 @@ def add_example(name, example):
             if "remedy" in example:
                 self.assertNotRegex(self.run_script(example["remedy"], folder), pattern)
 
-    setattr(Notices, f"test_{name}", test)
+    setattr(Statuses if NOTICES[name]["kind"] == "status" else Warnings, f"test_{name}", test)
 
 
 for _name, _example in EXAMPLES.items():
-    if "run" in _example:
+    if "run" in _example and _name in NOTICES:
         add_example(_name, _example)
 
 

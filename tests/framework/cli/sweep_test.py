@@ -14,6 +14,7 @@ import subprocess
 import time
 import unittest
 
+from case_turns import SEED, take_turn
 from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv, run_once
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
@@ -106,14 +107,14 @@ class Simulations(SweepTestCase):
                 *QUICK,
                 *tiny_maps,
                 "design.test.samples=50",
-                "design.train.samples=50,100,250,500,1000",
+                "design.train.samples=10,20,50,100,200",
                 "noise.scale=0.25,0.5,1,2",
                 "seed=1..5",
             ],
         )
         self.assertEqual(len(self.list_cases("run")), 5 * 4 * 5)
-        self.assertEqual(len(self.get_stored("run")), (1000 + 50) * 5)
-        self.assertIn("5250 of 5250 stored", call("status", self.folder / "run").stdout)
+        self.assertEqual(len(self.get_stored("run")), (200 + 50) * 5)
+        self.assertIn("1250 of 1250 stored", call("status", self.folder / "run").stdout)
 
     def test_a_case_is_bit_for_bit_the_run_of_it_alone(self):
         """Also where cases differ in what they see of the response: they share the simulations."""
@@ -284,13 +285,13 @@ class Continuing(SweepTestCase):
         start = time.monotonic()
         self.run_sweep("undisturbed", sweep=KILLED)
         duration = time.monotonic() - start
-        rng = random.Random(3)
-        kills = int(os.environ.get("TWINMAP_SWEEP_KILLS", "6"))
+        rng = random.Random(SEED)
+        kills = take_turn(range(int(os.environ.get("TWINMAP_SWEEP_KILLS", "10"))))
         stages = collections.Counter()
-        for i in range(kills):
+        for i in kills:
             stored = self.get_all_stored("run")
             child = self.start("run", "--threads", rng.choice("123"), sweep=KILLED)
-            if i % 6 == 1:
+            if i % 5 == 1:
                 self.wait_for_stencils("run", child)
             time.sleep(rng.uniform(0.0, 0.1 if i % 2 == 1 else 0.6 * duration))
             survived = child.poll() is not None
@@ -300,7 +301,7 @@ class Continuing(SweepTestCase):
                 self.assertLessEqual(before, now)
             stages["survived" if survived else self.find_stage("run")] += 1
         print("killed while at:", dict(stages))
-        self.assertLess(stages["survived"], kills)
+        self.assertLess(stages["survived"], len(kills))
         self.run_sweep("run", sweep=KILLED)
         self.assertEqual(self.get_all_stored("run"), self.get_all_stored("undisturbed"))
         self.assert_same_sweeps("run", "undisturbed")

@@ -7,6 +7,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "framework/optimal_design/design_search.hpp"
+#include "tests/case_turns.hpp"
 
 namespace twinmap::experiment_design {
 namespace {
@@ -20,7 +21,7 @@ YamlNode loadTree() {
       {"design.excitation.free={'M.pulses[0].amplitude': [0, 0.075], 'M.pulses[0].end': [0.22, 0.4]}"});
 }
 
-class Grid : public testing::Test {
+class Grid : public ::testing::Test {
  protected:
   Grid() : tree_(loadTree()), evaluator_(makeEvaluator()), points_(makePoints()) {
     for (const Limit& limit : evaluator_.getLimits()) {
@@ -65,7 +66,8 @@ TEST_F(Grid, IsReachedFromAtLeastEightOfTenSeeds) {
   constexpr double kOnePercent = 0.02;  // of a standard deviation, in log variance
   const double grid = searchGrid(24);
   std::vector<double> found;
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (const int i : twinmap::testing::takeTurn(10)) {
+    const std::uint64_t seed = 1 + static_cast<std::uint64_t>(i);
     DesignSearch search([this](const VectorXd& point) { return judge(point); }, most_, {80, false, seed});
     search.run(calcPresentPoint(evaluator_.getNumbers()));
     ASSERT_NE(search.findBest(), nullptr);
@@ -75,9 +77,9 @@ TEST_F(Grid, IsReachedFromAtLeastEightOfTenSeeds) {
   RecordProperty("grid", std::to_string(grid));
   RecordProperty("best", std::to_string(best));
   EXPECT_LT(best, grid + kOnePercent);
-  const auto same = std::count_if(found.begin(), found.end(),
-                                  [&](double cost) { return cost < std::min(best, grid) + kOnePercent; });
-  EXPECT_GE(same, 8) << testing::PrintToString(found);
+  const auto missed = std::count_if(found.begin(), found.end(),
+                                    [&](double cost) { return cost >= std::min(best, grid) + kOnePercent; });
+  EXPECT_LE(missed, 2) << ::testing::PrintToString(found);
 }
 
 }  // namespace
