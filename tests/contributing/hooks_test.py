@@ -16,6 +16,7 @@ printf '%s\\n' "$text" | sed 's/ *$//'
 INSTALL = "#!/bin/sh\necho install ok installed\n"  # dpkg-query, of any package
 
 
+@unittest.skipUnless(shutil.which("git"), "git is not installed")
 class Hooks(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="twinmap_hooks_")
