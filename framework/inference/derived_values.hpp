@@ -8,7 +8,7 @@
 
 namespace twinmap {
 
-/// What is said of a derived quantity.
+/// What is said of a quantity beside the parameters.
 struct DerivedValue {
   std::string name, unit;
   double mean, stddev, lower95, upper95;
@@ -18,7 +18,10 @@ struct DerivedValue {
 /// `quantities` is null or nothing is believed.
 std::vector<DerivedValue> deriveFrom(const DerivedQuantities* quantities, const Estimate& estimate);
 
-/// Those of an experiment; null where it derives none.
+/// Of the nuisance parameters, where the estimate is refined or sampled; else none.
+std::vector<DerivedValue> listNuisance(const InferredMeasurement& inferred, const Estimate& estimate);
+
+/// Derived quantities of an experiment; null where it derives none.
 std::shared_ptr<const DerivedQuantities> makeDerivedQuantities(const ExperimentSpec& experiment);
 
 }  // namespace twinmap

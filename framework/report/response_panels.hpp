@@ -18,8 +18,9 @@ struct ResponseData {
 };
 
 struct ResponseLook {
-  bool band = false;  ///< around the updated model, from column lower to upper
-  bool zoom = false;  ///< the reader may drag and scroll the axis of time
+  bool band = false;    ///< around the updated model, from column lower to upper
+  bool zoom = false;    ///< the reader may drag and scroll the axis of time
+  bool nominal = true;  ///< whether the table has that column
 };
 
 /// The measured output over time, the nominal and the updated model.

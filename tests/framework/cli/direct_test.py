@@ -241,6 +241,50 @@ class Direct(FolderTestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("--page draws estimates of one measurement after another", refused.stderr)
 
+    def read_page(self, *arguments):
+        """Tables of figures, by name."""
+        page = self.folder / "page.html"
+        self.infer(*arguments, "--page", page)
+        data = re.search(r'id="page-data">(.*?)</script>', page.read_text(), re.DOTALL).group(1)
+        return json.loads(data)["tables"]
+
+    def test_page_of_one_recording_draws_measured_over_fitted(self):
+        lines = self.measured.read_text().splitlines()
+        holed = self.folder / "holed.csv"
+        holed.write_text("\n".join(lines[:40] + lines[60:]) + "\n")
+        tables = self.read_page(CART, holed)
+        self.assertNotIn("history", tables)  # one dot a parameter would say nothing
+        drawn = tables["recording-1-0"]
+        measured = np.array(drawn["measured"], dtype=float)
+        gone = [float(line.split(",")[0]) for line in lines[40:60]]
+        expected = [min(abs(time - t) for t in gone) < 1e-6 for time in drawn["time"]]
+        np.testing.assert_array_equal(np.isnan(measured), expected)
+        found = json.loads(self.infer(CART, holed, "--json"))["parameters"]
+        clean = self.folder / "clean.csv"
+        values = [f"parameters.{name}={one['mean']!r}" for name, one in found.items()]
+        self.assertEqual(call("simulate", CART, "--csv", clean, *values).returncode, 0)
+        fitted = np.loadtxt(clean, delimiter=",", skiprows=1)
+        expected = np.interp(drawn["time"], fitted[:, 0], fitted[:, 1])
+        np.testing.assert_allclose(drawn["updated"], expected, atol=2e-4)  # the best fit is not the mean: .2 noise sds
+        self.assertEqual(len(tables["recording-1-spectrum-0"]["power"]), len(measured[~np.isnan(measured)]) // 2)
+        self.assertEqual(tables["measurement-1-intervals"]["parameter"], ["k [N/m]", "d [N s/m]", "k3 [N/m^3]"])
+
+    def test_nuisance_parameters_have_estimates(self):
+        experiment = EXPERIMENTS / "mechanisms/released_pendulum.yaml"
+        true = {"start_x": 0.004, "start_angle": 0.9, "start_rate": 0.1}
+        file = self.simulate(experiment, "released.csv", *(f"nuisance.{name}={value}" for name, value in true.items()))
+        found = json.loads(self.infer(experiment, file, "--json"))["nuisance"]
+        for name, value in true.items():
+            self.assertLess(abs(found[name]["mean"] - value), 4 * found[name]["sd"], name)
+            self.assertTrue(found[name]["lower"] < found[name]["mean"] < found[name]["upper"], name)
+        table = self.infer(experiment, file)
+        self.assertIn("  nuisance parameters:\n", table)
+        self.assertIn("\n  start_angle  rad ", table)
+        tables = self.read_page(experiment, file, file)
+        self.assertIn("history", tables)
+        self.assertIn("start_rate [rad/s]", tables["measurement-2-intervals"]["parameter"])
+        self.assertIn("recording-2-1", tables)  # the second output
+
     def test_table_and_csv_say_the_same(self):
         found = json.loads(self.infer(CART, self.measured, "--json"))
         table = self.infer(CART, self.measured)
