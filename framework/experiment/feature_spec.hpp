@@ -13,11 +13,12 @@
 namespace twinmap {
 
 /// How samples are made fewer.
-enum class SampleReduction { kAutomatic };
+enum class SampleReduction { kAutomatic, kNone };
 
 template <>
 struct EnumNames<SampleReduction> {
-  static constexpr EnumName<SampleReduction> values[] = {{"automatic", SampleReduction::kAutomatic}};
+  static constexpr EnumName<SampleReduction> values[] = {{"automatic", SampleReduction::kAutomatic},
+                                                         {"none", SampleReduction::kNone}};
 };
 
 /// Equidistant samples of outputs.
@@ -26,7 +27,9 @@ struct SamplesFeatureSpec {
   double start = 0.0;
   double interval = 0.0;
   int count = 0;
-  std::optional<SampleReduction> reduce{};  ///< for a run, to what tells about the parameters
+  std::optional<SampleReduction> reduce{};  ///< for a run; none: as its size asks for (reduceLongRecord)
+
+  bool isReduced() const { return reduce == SampleReduction::kAutomatic; }
 };
 
 template <class Fields>
@@ -35,7 +38,9 @@ void describe(Fields& f, SamplesFeatureSpec& s) {
   f.required("start", s.start, "time of the first sample; s", kNonNegative);
   f.required("interval", s.interval, "time between samples; s", kSampleInterval);
   f.required("count", s.count, "samples of each output", kSampleCount);
-  f.optional("reduce", s.reduce, "automatic: a run keeps what tells about the parameters (default: all)");
+  f.optional("reduce", s.reduce,
+             "automatic: a run keeps what tells about the parameters; none: all (default: automatic for "
+             "10000 samples and more)");
   f.rule(!s.outputs.empty(), "must name at least one of outputs");
 }
 

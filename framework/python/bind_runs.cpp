@@ -5,6 +5,7 @@
 
 #include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
+#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/interruptible.hpp"
 #include "framework/python/python_experiment.hpp"
@@ -97,13 +98,14 @@ void runWithProgress(int threads, const std::function<void(const Progress&)>& pr
 void run(const PythonExperiment& experiment, const Request& request,
          const std::function<void(const Progress&)>& progress) {
   runWithProgress(request.threads, progress, [&](const RunControl& control) {
-    requireMemory(experiment.getSpec(), request.threads, getAvailableMemory());
-    requireModel(experiment.getSpec());
+    const ExperimentSpec spec = reduceLongRecord(experiment.getSpec());
+    requireMemory(spec, request.threads, getAvailableMemory());
+    requireModel(spec);
     RunOptions options;
     options.folder = request.folder;
     options.store = request.store;
     options.command = request.command;
-    runExperiment(experiment.getSpec(), options, control);
+    runExperiment(spec, options, control);
   });
 }
 

@@ -4,6 +4,7 @@
 #include "framework/base/log/log.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/study/sweep/plan.hpp"
@@ -27,6 +28,9 @@ void plan(const RunArguments& arguments) {
   const PlanOptions options{arguments.threads, chooseMemory(arguments)};
   std::vector<SweepCase> cases = expandCasesWithSignals(tree);
   followNoise(cases);
+  if (cases.size() == 1) {
+    cases.front().experiment = reduceLongRecord(std::move(cases.front().experiment));
+  }
   silenceLog();  // of the small runs that are timed
   ExperimentSurvey survey =
       surveyCases(std::move(cases), {chooseFolder(arguments, readExperiment(tree)), arguments.store});

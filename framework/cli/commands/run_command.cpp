@@ -10,6 +10,7 @@
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/experiment/check/check_noise.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/results/tables.hpp"
@@ -34,7 +35,8 @@ RunControl makeControl(const RunArguments& arguments, ProgressLine& line) {
   return control;
 }
 
-void runSingle(const ExperimentSpec& experiment, const RunArguments& arguments, const fs::path& folder) {
+void runSingle(const ExperimentSpec& given, const RunArguments& arguments, const fs::path& folder) {
+  const ExperimentSpec experiment = reduceLongRecord(given);
   requireMemory(experiment, arguments.threads, getMostMemory(arguments));
   requireModel(experiment);  // before the folder is touched
   ProgressLine line(arguments.quiet);

@@ -187,7 +187,7 @@ std::string ResponseReduction::describe(const std::vector<ParameterSpec>& parame
       spans > 1 ? fmt::format(", {} in each of {} spans of time", countScores(), spans) : "";
   return fmt::format(
       "{} samples are reduced to {} scores{}: standard deviations are {} times those that all samples allow, "
-      "at most ({})",
+      "at most ({}); 'reduce: none' keeps all",
       countSamples(), countScores() * spans, each, toShortText(ratio, 5),
       parameters[static_cast<std::size_t>(worst)].name.text);
 }
@@ -195,14 +195,41 @@ std::string ResponseReduction::describe(const std::vector<ParameterSpec>& parame
 bool isReduced(const ExperimentSpec& experiment) {
   return std::any_of(experiment.features.begin(), experiment.features.end(), [](const FeatureSpec& feature) {
     const auto* samples = std::get_if<SamplesFeatureSpec>(&feature);
-    return samples != nullptr && samples->reduce;
+    return samples != nullptr && samples->isReduced();
   });
+}
+
+ExperimentSpec reduceLongRecord(ExperimentSpec experiment) {
+  constexpr Index kLong = 10000;  // takes 1.5 GiB with all samples, a third of that with what tells of them
+  Index count = 0;
+  for (const FeatureSpec& feature : experiment.features) {
+    const auto* samples = std::get_if<SamplesFeatureSpec>(&feature);
+    if (samples == nullptr || samples->reduce) {
+      return experiment;
+    }
+    count += static_cast<Index>(samples->outputs.size()) * samples->count;
+  }
+  const std::vector<OutputNoiseSpec>& noise = experiment.noise.stddev;
+  const auto has_noise = [&](const Name& output) {
+    return std::any_of(noise.begin(), noise.end(), [&](const OutputNoiseSpec& spec) {
+      return spec.name.text == output.text && experiment.noise.scale * spec.stddev > 0.0;
+    });
+  };
+  const std::vector<Name> outputs = collectOutputs(experiment.features);
+  if (count < kLong || !experiment.trials.empty() || experiment.inverse_map.isNone() ||
+      !experiment.noise.correlation.empty() || !std::all_of(outputs.begin(), outputs.end(), has_noise)) {
+    return experiment;
+  }
+  for (FeatureSpec& feature : experiment.features) {
+    std::get<SamplesFeatureSpec>(feature).reduce = SampleReduction::kAutomatic;
+  }
+  return experiment;
 }
 
 void requireAllSamples(const ExperimentSpec& experiment, const std::string& what) {
   if (isReduced(experiment)) {
     throw ExperimentError({experiment.name.where.file, 0, 0, "features"}, "",
-                          "are reduced, but " + what + " needs all samples; leave 'reduce' out");
+                          "are reduced, but " + what + " needs all samples; give them 'reduce: none'");
   }
 }
 

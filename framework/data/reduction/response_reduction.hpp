@@ -66,6 +66,10 @@ struct ResponseReduction {
 /// Whether the samples of an experiment are to be reduced (features.samples.reduce).
 bool isReduced(const ExperimentSpec& experiment);
 
+/// With 'reduce: automatic' where the samples are 10000 or more, nothing else is looked at and their noise is
+/// independent, unless the file says otherwise or has trials.
+ExperimentSpec reduceLongRecord(ExperimentSpec experiment);
+
 /// Throws ExperimentError where they are: for `what`, which needs all samples.
 void requireAllSamples(const ExperimentSpec& experiment, const std::string& what);
 

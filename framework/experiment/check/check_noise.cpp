@@ -67,7 +67,7 @@ void checkReduced(const ExperimentSpec& experiment) {
   bool any = false, all = true;
   for (const FeatureSpec& feature : experiment.features) {
     const auto* samples = std::get_if<SamplesFeatureSpec>(&feature);
-    const bool reduced = samples != nullptr && samples->reduce;
+    const bool reduced = samples != nullptr && samples->isReduced();
     any = any || reduced;
     all = all && reduced;
   }

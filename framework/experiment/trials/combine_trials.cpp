@@ -86,7 +86,7 @@ void rename(const std::string& trial, FrequencyResponseFeatureSpec& response) {
 
 bool isReduced(const FeatureSpec& feature) {
   const auto* samples = std::get_if<SamplesFeatureSpec>(&feature);
-  return samples != nullptr && samples->reduce.has_value();
+  return samples != nullptr && samples->isReduced();
 }
 
 void appendFeatures(const TrialExperiment& trial, std::vector<FeatureSpec>& features) {

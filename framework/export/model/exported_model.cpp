@@ -82,7 +82,9 @@ VectorXd ExportedModel::getBoxHalfWidth() const {
 ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
   TrainedFile stored = readTrainedFile(findMaps(run_or_maps));
   if (stored.reduction) {
-    throw ExperimentError("a map of reduced samples cannot be exported: it needs all samples of a recording");
+    throw ExperimentError(
+        "a map of reduced samples cannot be exported: it needs all samples of a recording: give them "
+        "'reduce: none', or take fewer");
   }
   ExportedModel model;
   model.experiment = readResolved(stored.experiment);

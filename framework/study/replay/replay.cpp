@@ -158,7 +158,7 @@ Replay replay(const Inferrer& inferrer, const ReplayOptions& options) {
   if (inferrer.getReader().findReduction() != nullptr) {
     throw ExperimentError(
         "a run of reduced samples cannot be replayed; infer from the experiment file, which needs no run, "
-        "and simulate there");
+        "and simulate there, or give the samples 'reduce: none'");
   }
   const Table table = readWindow(inferrer, options.measurement);
   const Window window(inferrer, table, options.measurement.start);

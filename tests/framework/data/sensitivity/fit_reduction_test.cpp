@@ -121,5 +121,37 @@ TEST(ReducedSamples, AreRefusedWhereTheyCannotBe) {
       std::string::npos);
 }
 
+/// With `count` samples of x and what else is given.
+bool isReducedByDefault(int count, const std::vector<std::string>& more = {},
+                        const std::string& samples = "") {
+  std::vector<std::string> overrides{
+      "features=[{samples: {outputs: [x], start: 0.0001, interval: 0.0001, count: " + std::to_string(count) +
+      samples + "}}]"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return isReduced(reduceLongRecord(loadExperiment(kCart, overrides)));
+}
+
+TEST(LongRecord, IsReducedUnlessSomethingSpeaksAgainstIt) {
+  EXPECT_FALSE(isReducedByDefault(9999));
+  EXPECT_TRUE(isReducedByDefault(10000));
+  EXPECT_FALSE(isReducedByDefault(10000, {}, ", reduce: none"));
+  EXPECT_TRUE(isReducedByDefault(100, {}, ", reduce: automatic"));
+  EXPECT_FALSE(isReducedByDefault(10000, {"noise.stddev.x=0"}));
+  EXPECT_FALSE(isReducedByDefault(10000, {"noise.correlation={x: {autoregression: [0.5]}}"}));
+  EXPECT_FALSE(isReducedByDefault(10000, {"inverse_map=none"}));
+}
+
+TEST(LongRecord, OfTwoOutputsCountsBoth) {
+  const std::string outputs = "outputs={x: {coordinate: x}, v: {speed: x}}";
+  const auto load = [&](int count) {
+    return reduceLongRecord(loadExperiment(
+        kCart, {outputs, "noise.stddev={x: 1e-4, v: 1e-3}",
+                "features=[{samples: {outputs: [x, v], start: 0.0005, interval: 0.0005, count: " +
+                    std::to_string(count) + "}}]"}));
+  };
+  EXPECT_FALSE(isReduced(load(4999)));
+  EXPECT_TRUE(isReduced(load(5000)));
+}
+
 }  // namespace
 }  // namespace twinmap
