@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "framework/base/text/source_location.hpp"
-#include "framework/experiment/experiment_file.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
 #include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
