@@ -122,18 +122,6 @@ Estimate selectEstimate(const InferredMeasurement& inferred) {
   return estimate;
 }
 
-Eigen::VectorXd findExplanation(const InferredMeasurement& inferred, const Eigen::VectorXd& known) {
-  const PosteriorEstimate* posterior = findSimulated(inferred);
-  if (posterior != nullptr && posterior->fit->isSimulated() &&
-      (isSampled(inferred) || !isAccepted(inferred))) {
-    const Eigen::VectorXd& best = posterior->fit->best;
-    Eigen::VectorXd point(best.size() + known.size());
-    point << best, known;
-    return point;
-  }
-  return isAccepted(inferred) ? inferred.refined->point : inferred.explanation;
-}
-
 Estimate makeEstimate(const Refined& refined, Eigen::Index parameters) {
   Estimate estimate{refined.mean.head(parameters), refined.stddev.head(parameters)};
   estimate.correlation = calcCorrelation(refined.covariance.topLeftCorner(parameters, parameters));

@@ -12,10 +12,6 @@ namespace twinmap {
 /// is none of them.
 Estimate selectEstimate(const InferredMeasurement& inferred);
 
-/// The point of the sampled box (u + q) that explains the measurement best, by what gave the estimate: the
-/// best fit on the simulator where there is one. known: q. Empty where nothing says.
-Eigen::VectorXd findExplanation(const InferredMeasurement& inferred, const Eigen::VectorXd& known);
-
 /// That of a refinement that was accepted: its first p parameters.
 Estimate makeEstimate(const Refined& refined, Eigen::Index parameters);
 

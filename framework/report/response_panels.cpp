@@ -9,7 +9,6 @@ Texts makeTexts(const ResponseData& data) {
           {"label", makeLabel(data.output, data.unit)},
           {"case", data.which},
           {"measured", data.measured},
-          {"models", ", nominal and updated"},
           {"of_case", data.which.empty() ? "" : ", " + data.which + " case"}};
 }
 
@@ -30,10 +29,6 @@ Panel makeResponsePanel(const ResponseData& data, const ResponseLook& look) {
   Panel panel{"response", makeTexts(data), {}, findMissingData(data, look)};
   if (!look.band) {
     panel.without.insert("band");
-  }
-  if (!look.nominal) {
-    panel.without.insert("nominal");
-    panel.texts["models"] = " and updated";
   }
   return panel;
 }

@@ -18,9 +18,8 @@ struct ResponseData {
 };
 
 struct ResponseLook {
-  bool band = false;    ///< around the updated model, from column lower to upper
-  bool zoom = false;    ///< the reader may drag and scroll the axis of time
-  bool nominal = true;  ///< whether the table has that column
+  bool band = false;  ///< around the updated model, from column lower to upper
+  bool zoom = false;  ///< the reader may drag and scroll the axis of time
 };
 
 /// The measured output over time, the nominal and the updated model.

@@ -90,9 +90,8 @@ void addInfer(CLI::App& app) {
   addRefine(*command, arguments->refine);
   addPosterior(*command, *arguments);
   command
-      ->add_option(
-          "--page", arguments->page,
-          "File for a page (HTML) of measured over fitted responses, residuals, estimates and their changes")
+      ->add_option("--page", arguments->page,
+                   "File for a page (HTML) that draws the parameters over the measurements and names changes")
       ->type_name("FILE");
   command
       ->add_flag("--diagnose", arguments->diagnose,

@@ -156,7 +156,12 @@ Section makeHistoryVerdict(const History& history, const std::optional<std::vect
   return section;
 }
 
-void addHistory(const History& history, const std::optional<std::vector<Course>>& courses, Page& page) {
+}  // namespace
+
+std::string makeHistoryPage(const std::string& title, const History& history,
+                            const std::optional<std::vector<Course>>& courses) {
+  Page page;
+  page.title = title;
   page.sections.push_back(makeHistoryVerdict(history, courses));
   page.tables[kTable] = makeHistoryTable(history, courses);
   Figure figure{"history",
@@ -174,65 +179,6 @@ void addHistory(const History& history, const std::optional<std::vector<Course>>
   addFigure(std::move(figure), section);
   section.html += makeFolded("All estimates", makeEstimatesTable(history));
   page.sections.push_back(std::move(section));
-}
-
-std::string makeIntervalsTable(const ShownInference& shown, const std::string& id) {
-  constexpr int kDigits = 6, kStddevDigits = 3;
-  std::vector<std::vector<HtmlCell>> rows;
-  for (std::size_t p = 0; p < shown.estimates.size(); ++p) {
-    const ShownEstimate& estimate = shown.estimates[p];
-    rows.push_back({makeTextCell(shown.parameters[p].name.text), makeTextCell(shown.parameters[p].unit),
-                    makeNumberCell(toText(estimate.mean), kDigits),
-                    makeNumberCell(toText(estimate.stddev), kStddevDigits),
-                    makeNumberCell(toText(estimate.lower95), kDigits),
-                    makeNumberCell(toText(estimate.upper95), kDigits)});
-  }
-  return makeHtmlTable(id, "Parameters, and nuisance parameters below.",
-                       {"parameter", "unit", "mean", "sd", "95 % from", "to"}, rows);
-}
-
-void addInference(const ShownInference& shown, const std::string& id, Page& page) {
-  Section section{id, shown.source, "", {}};
-  for (const std::string& line : shown.verdict) {
-    section.html += makeParagraph(line, "class=\"lead\"");
-  }
-  if (!shown.estimates.empty()) {
-    addFigure(makeEstimateFigure(id + "-intervals", "Estimates within their bounds", shown.parameters,
-                                 shown.estimates, page),
-              section);
-    section.html += makeIntervalsTable(shown, id + "-table");
-  }
-  if (shown.recording) {
-    addRecordingFigures(*shown.recording, page, section);
-  }
-  page.sections.push_back(std::move(section));
-}
-
-/// Numbers of the measurements that are drawn.
-std::vector<std::size_t> chooseDrawn(std::size_t count) {
-  constexpr std::size_t kMost = 12, kLast = 2;  // a megabyte of two outputs of a thousand samples
-  std::vector<std::size_t> drawn;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (count <= kMost || i < kMost - kLast || i >= count - kLast) {
-      drawn.push_back(i);
-    }
-  }
-  return drawn;
-}
-
-}  // namespace
-
-std::string makeHistoryPage(const std::string& title, const History& history,
-                            const std::optional<std::vector<Course>>& courses,
-                            const std::vector<ShownInference>& shown) {
-  Page page;
-  page.title = title;
-  if (history.points.size() > 1) {
-    addHistory(history, courses, page);
-  }
-  for (const std::size_t i : chooseDrawn(shown.size())) {
-    addInference(shown[i], "measurement-" + std::to_string(i + 1), page);
-  }
   addProfiles(history, page);
   return makePage(page);
 }

@@ -4,8 +4,8 @@
 #include <map>
 #include <optional>
 
-#include "framework/analysis/residual_spectrum.hpp"
 #include "framework/report/html.hpp"
+#include "framework/study/replay/residual_spectrum.hpp"
 
 namespace twinmap {
 namespace {

@@ -80,7 +80,7 @@ class Replayer {
         replay_(replay),
         estimate_(selectEstimate(replay.inferred)) {
     if (replay.options.measurement == replay.options.from) {
-      explanation_ = findExplanation(replay.inferred, replay.options.known);
+      explanation_ = findExplanation();
     }
   }
 
@@ -102,6 +102,18 @@ class Replayer {
   }
 
  private:
+  /// The point of the sampled box that explains the measurement, by what gave the estimate.
+  VectorXd findExplanation() const {
+    const InferredMeasurement& inferred = replay_.inferred;
+    if (estimate_.method != EstimationMethod::kPosterior) {
+      return estimate_.isRefined() ? inferred.refined->point : inferred.explanation;
+    }
+    const VectorXd &best = inferred.posterior->fit->best, &known = replay_.options.known;
+    VectorXd point(best.size() + known.size());
+    point << best, known;
+    return point;
+  }
+
   void fitNuisance(const VectorXd& parameters, ReplayedModel& model) const {
     const VectorXd start = makePoint(model_, parameters, explanation_, replay_.options.known);
     const Refined fitted = window_.refiner.fitNuisance(start, window_.features);

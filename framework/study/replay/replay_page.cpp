@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "framework/base/log/notice.hpp"
@@ -13,9 +15,10 @@
 #include "framework/report/estimate_panel.hpp"
 #include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
-#include "framework/report/recording_figures.hpp"
+#include "framework/report/response_panels.hpp"
 #include "framework/report/sections/verdict.hpp"
 #include "framework/study/replay/replay_files.hpp"
+#include "framework/study/replay/residual_spectrum.hpp"
 
 namespace twinmap {
 namespace {
@@ -24,6 +27,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kShownDigits = 6;
+constexpr Index kMaxTimes = 10000;  // that are drawn
 
 HtmlCell makeShownCell(double value, int digits = kShownDigits) {
   return makeNumberCell(toText(value), digits);
@@ -148,6 +152,79 @@ std::string makeFitHtml(const Replay& replay) {
       rows);
 }
 
+DataTable makeTable(const Replay& replay, Index output) {
+  const Index times = replay.layout.times.size();
+  const Index step = (times + kMaxTimes - 1) / kMaxTimes;
+  const auto pick = [&](const VectorXd& rows, Index first) {
+    std::vector<double> values;
+    for (Index i = 0; i < times; i += step) {
+      values.push_back(rows[first + i]);
+    }
+    return values;
+  };
+  const Index first = replay.layout.getRow(output, 0);
+  DataTable table;
+  table.add("time", pick(replay.layout.times, 0));
+  table.add("measured", pick(replay.measured, first));
+  table.add("nominal", pick(replay.nominal.response, first));
+  table.add("updated", pick(replay.updated.response, first));
+  table.add("lower", pick(replay.lower, first));
+  table.add("upper", pick(replay.upper, first));
+  table.add("noise_stddev", pick(replay.noise_stddev, first));
+  return table;
+}
+
+std::string makeHelp(const Replay& replay) {
+  std::string help =
+      "Points: measured; dashed: the nominal model, at the centre of the bounds; solid: the updated model, "
+      "with "
+      "the "
+      "95 % band that the uncertainty of the parameters leaves. Below: measured minus updated; where the "
+      "updated model is right, 95 % lie in the grey band of \u00b12 noise sd. Drag and scroll to move and "
+      "zoom "
+      "the axis of time, double-click to take it back.";
+  if (replay.layout.times.size() > kMaxTimes) {
+    help += " Not all times are drawn; replay.csv has them all.";
+  }
+  return help;
+}
+
+Figure makeFigure(const Replay& replay, Index output) {
+  const auto o = static_cast<std::size_t>(output);
+  const std::string table = "replay-" + std::to_string(output);
+  const ResponseData data{table, replay.layout.output_names[o], replay.layout.output_units[o]};
+  constexpr ResponseLook kLook{true, true};
+  return {table, replay.layout.output_names[o] + ": measured, nominal, updated",   makeHelp(replay),
+          table, {makeResponsePanel(data, kLook), makeResidualPanel(data, kLook)}, {},
+          1};
+}
+
+/// The spectrum of an output's residual; none where it has no noise or too few times.
+std::optional<Figure> makeSpectrum(const Replay& replay, Index output, Page& page) {
+  constexpr Index kMin = 16;
+  const Index times = replay.layout.times.size(), first = replay.layout.getRow(output, 0);
+  const VectorXd residual = (replay.measured - replay.updated.response)
+                                .segment(first, times)
+                                .cwiseQuotient(replay.noise_stddev.segment(first, times));
+  if (times < kMin || !residual.allFinite()) {
+    return std::nullopt;
+  }
+  const ResidualSpectrum spectrum = calcResidualSpectrum(replay.layout.times, residual);
+  const std::string name = "spectrum-" + std::to_string(output);
+  DataTable& table = page.tables[name];
+  table.add("frequency", std::vector<double>(spectrum.frequency.begin(), spectrum.frequency.end()));
+  table.add("power", std::vector<double>(spectrum.power.begin(), spectrum.power.end()));
+  const std::string& label = replay.layout.output_names[static_cast<std::size_t>(output)];
+  return Figure{name,
+                label + ": spectrum of the residual",
+                "Where the updated model is right, the residual is noise and its power about 1 at all "
+                "frequencies (dashed). A peak is a vibration that the model lacks.",
+                name,
+                {{"spectrum", {{"table", name}, {"output", label}}}},
+                {},
+                1};
+}
+
 /// What was estimated beside the bounds, and the tables of all numbers.
 Section makeParameters(const Inferrer& inferrer, const Replay& replay, Page& page) {
   const ModelSpec& model = inferrer.getExperiment().model;
@@ -171,9 +248,13 @@ std::string makeReplayPage(const Inferrer& inferrer, const Replay& replay) {
   page.title = "Replay of " + replay.options.measurement.file.filename().string();
   page.sections.push_back(makeVerdict(inferrer, replay));
   Section responses{"responses", "Responses", "", {}};
-  addRecordingFigures({"replay", replay.layout, replay.measured, replay.noise_stddev, replay.updated.response,
-                       replay.nominal.response, replay.lower, replay.upper, "replay.csv"},
-                      page, responses);
+  for (Index output = 0; output < replay.layout.getOutputCount(); ++output) {
+    page.tables["replay-" + std::to_string(output)] = makeTable(replay, output);
+    addFigure(makeFigure(replay, output), responses);
+    if (std::optional<Figure> spectrum = makeSpectrum(replay, output, page)) {
+      addFigure(std::move(*spectrum), responses);
+    }
+  }
   page.sections.push_back(std::move(responses));
   page.sections.push_back(makeParameters(inferrer, replay, page));
   page.sections.push_back({"fit", "Fit", makeFitHtml(replay), {}});

@@ -170,7 +170,7 @@ class Replay(ReplayCase):
         page = (folder / "report.html").read_text()
         data = json.loads(re.search(r'id="page-data">(.*?)</script>', page, re.DOTALL).group(1))
         figures = {figure["name"]: figure for figure in data["figures"]}
-        self.assertEqual(list(figures), ["replay-0", "replay-spectrum-0", "replay-1", "replay-spectrum-1", "intervals"])
+        self.assertEqual(list(figures), ["replay-0", "spectrum-0", "replay-1", "spectrum-1", "intervals"])
         for name, columns in zip(("replay-0", "replay-1"), self.read_replay(folder).values()):
             figure = figures[name]
             self.assertEqual(len(figure["panels"]), 2)

@@ -26,7 +26,6 @@
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/report/history/history_page.hpp"
 #include "framework/simulation/simulator_team.hpp"
-#include "framework/study/replay/fitted_recording.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -133,7 +132,6 @@ class InferCommand {
           inferred.missing = findMissingTerm(source_.getExperiment(), *recording, inferred);
         }
         inferred.asked.diagnoses = diagnoses_ && recording;
-        show(inferred, table, start);
         waiting.clear();
         print(inferred, diagnoses_ && recording ? &*recording : nullptr);
         ++count_;
@@ -141,21 +139,6 @@ class InferCommand {
         reportError(table.source, source_.getReader().getStatedStart(start), error.what());
       }
     }
-  }
-
-  /// On the page, if one is wanted.
-  void show(const InferredMeasurement& inferred, const Table& table, const std::optional<double>& start) {
-    if (page_.empty()) {
-      return;
-    }
-    const MeasurementReader& reader = source_.getReader();
-    ShownInference shown = showInference(inferred, getModel().parameters, reader.getExtractor().getInfos());
-    if (starts_.size() > 1) {
-      shown.source = nameWindow(table.source, start);
-    }
-    shown.recording = fitRecording(reader, table, start, known_, inferred,
-                                   "recording-" + std::to_string(shown_.size() + 1));
-    shown_.push_back(std::move(shown));
   }
 
   Asked describeAsked(const std::string& source, const std::optional<double>& start) const {
@@ -180,7 +163,7 @@ class InferCommand {
     }
     std::cout.flush();
     if (!page_.empty()) {
-      writeTextFile(page_, makeHistoryPage(source_.getExperiment().name.text, history, courses, shown_));
+      writeTextFile(page_, makeHistoryPage(source_.getExperiment().name.text, history, courses));
       std::cerr << "Page: " << page_ << "\n";
     }
   }
@@ -228,7 +211,6 @@ class InferCommand {
   const bool is_stream_, names_missing_, diagnoses_;
   const InferredPrinter printer_;
   InferHistory history_;
-  std::vector<ShownInference> shown_;  // on the page
   const std::string page_;
   std::vector<std::optional<double>> starts_;
   RowsFile draws_, profile_;

@@ -1,12 +1,9 @@
 #include "framework/cli/commands/measurements/infer_history.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "framework/base/log/notice.hpp"
-#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
-#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -39,32 +36,6 @@ void InferHistory::add(const InferredMeasurement& inferred) {
           {parameter, profile.points.row(profile.parameter), profile.log_ratios});
     }
   }
-}
-
-ShownInference showInference(const InferredMeasurement& inferred,
-                             const std::vector<ParameterSpec>& parameters,
-                             const std::vector<FeatureInfo>& features) {
-  ShownInference shown{inferred.source, {}, parameters, {}, {}};
-  std::istringstream trust(describeTrust(inferred, parameters, features) +
-                           describeMapLimit(inferred, parameters));
-  for (std::string line; std::getline(trust, line);) {
-    shown.verdict.push_back(line);
-  }
-  const Estimate estimate = selectEstimate(inferred);
-  if (!estimate.isGiven()) {
-    return shown;
-  }
-  const Bounds95 bounds = estimate.calcBounds95();
-  for (Eigen::Index p = 0; p < estimate.mean.size(); ++p) {
-    shown.estimates.push_back({estimate.mean[p], estimate.stddev[p], bounds.lower[p], bounds.upper[p]});
-  }
-  const std::vector<DerivedValue> nuisance = listNuisance(inferred, estimate);
-  for (std::size_t n = 0; n < nuisance.size(); ++n) {
-    shown.parameters.push_back(inferred.nuisance[n]);
-    shown.estimates.push_back(
-        {nuisance[n].mean, nuisance[n].stddev, nuisance[n].lower95, nuisance[n].upper95});
-  }
-  return shown;
 }
 
 }  // namespace twinmap::cli

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "framework/inference/inferrer.hpp"
-#include "framework/report/history/history_page.hpp"
+#include "framework/report/history/history.hpp"
 
 namespace twinmap::cli {
 
@@ -23,10 +22,5 @@ class InferHistory {
  private:
   History history_;
 };
-
-/// What the page says of one measurement. parameters: those that are reported.
-ShownInference showInference(const InferredMeasurement& inferred,
-                             const std::vector<ParameterSpec>& parameters,
-                             const std::vector<FeatureInfo>& features);
 
 }  // namespace twinmap::cli

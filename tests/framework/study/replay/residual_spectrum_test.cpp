@@ -1,4 +1,4 @@
-#include "framework/analysis/residual_spectrum.hpp"
+#include "framework/study/replay/residual_spectrum.hpp"
 
 #include <gtest/gtest.h>
 
