@@ -8,7 +8,7 @@
 
 namespace twinmap {
 
-/// What is said of a quantity beside the parameters.
+/// What is said of a derived quantity.
 struct DerivedValue {
   std::string name, unit;
   double mean, stddev, lower95, upper95;
@@ -18,10 +18,7 @@ struct DerivedValue {
 /// `quantities` is null or nothing is believed.
 std::vector<DerivedValue> deriveFrom(const DerivedQuantities* quantities, const Estimate& estimate);
 
-/// Of the nuisance parameters, where the estimate is refined or sampled; else none.
-std::vector<DerivedValue> listNuisance(const InferredMeasurement& inferred, const Estimate& estimate);
-
-/// Derived quantities of an experiment; null where it derives none.
+/// Those of an experiment; null where it derives none.
 std::shared_ptr<const DerivedQuantities> makeDerivedQuantities(const ExperimentSpec& experiment);
 
 }  // namespace twinmap

@@ -63,7 +63,6 @@ InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen
   inferred.quantities = quantities_;
   inferred.prior = prior_;
   inferred.unused = unused_;
-  inferred.nuisance = getExperiment().model.nuisance;
   inferred.by_estimator = map_->infer(features, known, *workspace.map);
   inferred.estimator_is_calibrated = isCalibrated(*map_, trust_ ? &*trust_ : nullptr);
   inferred.estimator_coverage_is_short = trust_ && trust_->coverage.isShort();

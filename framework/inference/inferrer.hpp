@@ -59,8 +59,7 @@ struct InferredMeasurement {
   std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
   std::shared_ptr<const StatedPrior> prior{};             ///< of the experiment; null where all is uniform
   std::vector<std::string> unused{};  ///< parameters that nothing in the experiment depends on
-  std::vector<ParameterSpec> nuisance{};
-  std::vector<Ridge> ridges{};  ///< of the simulator's posterior, where that alone was sampled
+  std::vector<Ridge> ridges{};        ///< of the simulator's posterior, where that alone was sampled
   std::optional<SegmentReport> segments{};
 };
 

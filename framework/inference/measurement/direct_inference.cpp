@@ -185,7 +185,6 @@ InferredMeasurement DirectInference::infer(const SimulatorRefiner& simulator, co
   inferred.quantities = quantities_;
   inferred.prior = prior_;
   inferred.unused = unused_;
-  inferred.nuisance = reader_.getExperiment().model.nuisance;
   return inferred;
 }
 

@@ -277,9 +277,6 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);
   }
-  if (const std::vector<DerivedValue> nuisance = listNuisance(inferred, estimate); !nuisance.empty()) {
-    json["nuisance"] = toJson(nuisance);
-  }
   if (inferred.quantities) {
     json["derived"] = toJson(deriveFrom(inferred.quantities.get(), estimate));
   }

@@ -63,13 +63,6 @@ std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>
   return makeTable(std::move(rows));
 }
 
-/// Beside the parameters; "" without nuisance parameters.
-std::string makeNuisanceTable(const InferredMeasurement& inferred, const Estimate& estimate) {
-  std::vector<Row> rows;
-  addRows(listNuisance(inferred, estimate), rows);
-  return rows.empty() ? "" : "  nuisance parameters:\n" + makeTable(std::move(rows));
-}
-
 /// How the refinement went; the table of its estimate follows where it was accepted.
 std::string describeRefined(const Refined& refined) {
   if (!refined.isAccepted()) {
@@ -203,7 +196,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text += describeRefined(*inferred.refined);
   }
   if (estimate.isGiven()) {
-    text += makeTable(estimate, parameters, quantities) + makeNuisanceTable(inferred, estimate);
+    text += makeTable(estimate, parameters, quantities);
   }
   for (const std::string& advice : adviseOnRidges(inferred.ridges, parameters)) {
     text += "  " + advice + "\n";

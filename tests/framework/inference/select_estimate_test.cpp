@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "framework/inference/derived_values.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
@@ -55,31 +52,6 @@ TEST(SelectEstimate, HasTheIntervalsThatTheEstimatorSays) {
   EXPECT_DOUBLE_EQ(estimate.findIntervals(0, Coverage::k50).front().second, 1.0 + 0.8 * 0.2);
   inferred.refined = makeRefined(RefinementStatus::kAccepted);
   EXPECT_DOUBLE_EQ(selectEstimate(inferred).calcBounds95().lower[0], 1.0 - kNormal95 * 0.1);
-}
-
-TEST(SelectEstimate, NuisanceParametersFollowTheReported) {
-  InferredMeasurement inferred = makeInferred();
-  inferred.nuisance.resize(1);
-  inferred.nuisance[0].name.text = "offset";
-  EXPECT_TRUE(listNuisance(inferred, selectEstimate(inferred)).empty());  // a map marginalises them
-  inferred.refined = makeRefined(RefinementStatus::kAccepted);
-  inferred.refined->mean = Eigen::Vector3d(1.0, 2.0, 0.5);
-  inferred.refined->stddev = Eigen::Vector3d(0.1, 0.1, 0.02);
-  inferred.refined->covariance = Eigen::Vector3d(0.01, 0.01, 0.0004).asDiagonal();
-  const std::vector<DerivedValue> refined = listNuisance(inferred, selectEstimate(inferred));
-  ASSERT_EQ(refined.size(), 1u);
-  EXPECT_EQ(refined[0].name, "offset");
-  EXPECT_DOUBLE_EQ(refined[0].mean, 0.5);
-  EXPECT_DOUBLE_EQ(refined[0].upper95, 0.5 + kNormal95 * 0.02);
-
-  Estimate sampled = selectEstimate(inferred);
-  sampled.draws.points = (Eigen::MatrixXd(3, 2) << 1, 1, 2, 2, 0, 4).finished();
-  sampled.draws.weights = Eigen::Vector2d(0.25, 0.75);
-  sampled.draws.lower = Eigen::Vector3d::Constant(-10);
-  sampled.draws.upper = Eigen::Vector3d::Constant(10);
-  const std::vector<DerivedValue> drawn = listNuisance(inferred, sampled);
-  EXPECT_DOUBLE_EQ(drawn[0].mean, 3.0);
-  EXPECT_DOUBLE_EQ(drawn[0].stddev, std::sqrt(3.0));  // 0 and 4 with weights 1/4 and 3/4
 }
 
 TEST(SelectEstimate, OfAMixtureHasItsSmallestSets) {
