@@ -1,5 +1,7 @@
 #include "framework/inference/derived_values.hpp"
 
+#include <cmath>
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -35,6 +37,30 @@ std::vector<DerivedValue> deriveFrom(const DerivedQuantities* quantities, const 
 
 std::shared_ptr<const DerivedQuantities> makeDerivedQuantities(const ExperimentSpec& experiment) {
   return experiment.derived.empty() ? nullptr : std::make_shared<const DerivedQuantities>(experiment);
+}
+
+std::vector<NuisanceEstimate> listNuisance(const InferredMeasurement& inferred) {
+  const PosteriorEstimate* posterior =
+      inferred.posterior && inferred.posterior->fit && inferred.posterior->isReliable() ? &*inferred.posterior
+                                                                                        : nullptr;
+  if (posterior == nullptr) {
+    return {};
+  }
+  const BoundedDraws& draws = posterior->estimate.draws;
+  const Index p = posterior->estimate.mean.size();
+  if (draws.points.rows() < p + static_cast<Index>(posterior->nuisance.size())) {
+    return {};  // of many unknown parameters the shared ones alone are drawn
+  }
+  std::vector<NuisanceEstimate> estimates;
+  for (std::size_t n = 0; n < posterior->nuisance.size(); ++n) {
+    const Index i = p + static_cast<Index>(n);
+    const double mean = draws.points.row(i).dot(draws.weights);
+    const double variance = (draws.points.row(i).array() - mean).square().matrix().dot(draws.weights);
+    const Eigen::VectorXd ends = draws.calcQuantiles(i, Eigen::Vector2d(0.025, 0.975));
+    estimates.push_back({posterior->nuisance[n].name.text, posterior->nuisance[n].unit, mean,
+                         std::sqrt(variance), ends[0], ends[1]});
+  }
+  return estimates;
 }
 
 }  // namespace twinmap

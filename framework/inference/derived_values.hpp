@@ -21,4 +21,14 @@ std::vector<DerivedValue> deriveFrom(const DerivedQuantities* quantities, const 
 /// Those of an experiment; null where it derives none.
 std::shared_ptr<const DerivedQuantities> makeDerivedQuantities(const ExperimentSpec& experiment);
 
+/// What is known of a nuisance parameter.
+struct NuisanceEstimate {
+  std::string name, unit;
+  double mean = 0.0, stddev = 0.0, lower95 = 0.0, upper95 = 0.0;
+};
+
+/// Of all nuisance parameters, from the draws of the simulator's posterior where that is reliable and has
+/// them; else empty.
+std::vector<NuisanceEstimate> listNuisance(const InferredMeasurement& inferred);
+
 }  // namespace twinmap

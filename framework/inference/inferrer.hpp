@@ -58,8 +58,9 @@ struct InferredMeasurement {
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
   std::shared_ptr<const DerivedQuantities> quantities{};  ///< of the experiment, if it derives any
   std::shared_ptr<const StatedPrior> prior{};             ///< of the experiment; null where all is uniform
-  std::vector<std::string> unused{};  ///< parameters that nothing in the experiment depends on
-  std::vector<Ridge> ridges{};        ///< of the simulator's posterior, where that alone was sampled
+  std::vector<std::string> against{};  ///< the model, where it explains nothing (listModelRemarks)
+  std::vector<std::string> unused{};   ///< parameters that nothing in the experiment depends on
+  std::vector<Ridge> ridges{};         ///< of the simulator's posterior, where that alone was sampled
   std::optional<SegmentReport> segments{};
 };
 

@@ -198,6 +198,9 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
       })) {
     statuses.emplace_back("model_mismatch");
   }
+  if (!inferred.beyond.empty()) {
+    statuses.emplace_back("at_bounds");
+  }
   if (inferred.disagrees()) {
     statuses.emplace_back("trials_disagree");
   }
@@ -362,6 +365,9 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   inferred.simulations += inferred.joint.simulations;
   if (!(inferred.joint.degrees > 0.0)) {
     return inferred;
+  }
+  for (const Index i : inferred.joint.beyond) {
+    inferred.beyond.push_back(problem.unknown[static_cast<std::size_t>(i)].name.text);
   }
   std::vector<double> separate;
   for (const RecordingInference& one : inferred.alone) {

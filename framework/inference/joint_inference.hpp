@@ -46,6 +46,7 @@ struct JointInference {
   std::vector<RecordingInference> alone;
   SimulatorPosterior joint;                   ///< of the machine's parameters
   std::optional<Agreement> agreement;         ///< where all could be simulated
+  std::vector<std::string> beyond{};          ///< what fits best beyond a bound (findBeyondBounds)
   std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first
   std::vector<ScatterEstimate> scatter;       ///< of each parameter; empty unless they disagree
   int simulations = 0;
@@ -55,8 +56,9 @@ struct JointInference {
 };
 
 /// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
-/// "model_mismatch" (of a recording alone), "trials_disagree" (below kAgreementLevel), "unreliable",
-/// "multimodal", "uninformative"; {"ok"} where nothing is. Of the first `parameters`, the machine's.
+/// "model_mismatch" (of a recording alone), "at_bounds", "trials_disagree" (below kAgreementLevel),
+/// "unreliable", "multimodal", "uninformative"; {"ok"} where nothing is. Of the first `parameters`, the
+/// machine's.
 std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
 
 /// The mean of values with standard deviations that scatter more than these say: variance between them by

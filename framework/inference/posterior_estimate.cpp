@@ -191,6 +191,7 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
   made.message = posterior.message;
   made.fit = makeFit(posterior, unknown, infos);
   made.places = posterior.places;
+  made.nuisance.assign(unknown.begin() + p, unknown.end());
   if (made.isReliable()) {
     made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),
                                  posterior.mean.head(p), posterior.covariance.topLeftCorner(p, p));

@@ -68,6 +68,7 @@ struct PosteriorEstimate {
   PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
   std::vector<Profile> profiles;                        ///< likewise, where they were asked for
   Eigen::MatrixXd places{};                             ///< SimulatorPosterior::places
+  std::vector<ParameterSpec> nuisance{};                ///< of the simulator's: drawn behind those reported
 
   bool isReliable() const { return message.empty(); }
   /// "ok", "unreliable", or "posterior_uncalibrated" of a surrogate's that is in doubt.

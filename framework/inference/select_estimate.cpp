@@ -49,13 +49,22 @@ void addNoise(const SimulatorFit& fit, Statuses& statuses) {
   }
 }
 
+/// Where the simulator's best point lies beyond them, whatever is said beside.
+void addBounds(const InferredMeasurement& inferred, Statuses& statuses) {
+  const PosteriorEstimate* posterior = findSimulated(inferred);
+  const char* name = toString(TrustStatus::kAtBounds);
+  if (posterior != nullptr && !posterior->fit->beyond.empty() &&
+      std::find(statuses.begin(), statuses.end(), name) == statuses.end()) {
+    statuses.emplace_back(name);
+  }
+}
+
 Statuses listOfSampled(const InferredMeasurement& inferred) {
   Statuses statuses;
   if (leavesMisfit(inferred)) {
     statuses.emplace_back(toString(TrustStatus::kModelMismatch));
-  } else if (inferred.posterior->fit && !inferred.posterior->fit->beyond.empty()) {
-    statuses.emplace_back(toString(TrustStatus::kAtBounds));
   }
+  addBounds(inferred, statuses);
   if (inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
     statuses.emplace_back("outliers");
   }
@@ -91,6 +100,9 @@ Statuses listOfOthers(const InferredMeasurement& inferred) {
     }
   } else if (leavesMisfit(inferred)) {
     statuses.emplace_back(toString(TrustStatus::kModelMismatch));
+  }
+  if (!isAccepted(inferred)) {
+    addBounds(inferred, statuses);
   }
   addRefinement(inferred, statuses);
   if (findSimulated(inferred) != nullptr) {

@@ -229,6 +229,20 @@ void dropRefinement(std::vector<Warning>& warnings) {
   }
 }
 
+/// A surrogate whose errors are not known is not advised.
+void dropUncalibrated(std::vector<Warning>& warnings) {
+  const std::string doubt = getNotice(Notice::kSurrogateUncalibrated).happened;
+  const bool is_doubted = std::any_of(warnings.begin(), warnings.end(), [&](const Warning& warning) {
+    return warning.text.rfind(doubt, 0) == 0;
+  });
+  for (Warning& warning : warnings) {
+    const std::size_t remedy = warning.text.find("\n  Use the surrogate itself");
+    if (is_doubted && remedy != std::string::npos) {
+      warning.text.resize(remedy);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> collectWarnings(const RunSummary& run) {
@@ -246,6 +260,7 @@ std::vector<std::string> collectWarnings(const RunSummary& run) {
   if (areRefined(run)) {
     dropRefinement(warnings);
   }
+  dropUncalibrated(warnings);
   return listTexts(std::move(warnings));
 }
 

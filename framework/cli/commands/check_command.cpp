@@ -10,6 +10,7 @@
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/jumps.hpp"
 #include "framework/models/make_simulator.hpp"
+#include "framework/models/model_remarks.hpp"
 #include "framework/study/sweep/model_groups.hpp"
 
 namespace twinmap::cli {
@@ -55,22 +56,25 @@ std::string abbreviateTables(const std::string& text) {
 
 void check(const CheckArguments& arguments) {
   const YamlNode tree = loadExperimentTree(arguments.experiment.file, arguments.experiment.overrides);
-  std::set<std::string> engines, jumps;
+  std::set<std::string> engines, remarks;
   std::vector<std::string> machine;  // of the first model: those of a sweep are alike
   for (const ModelGroup& group : groupByModel(expandCasesWithSignals(tree))) {  // what is wrong in any case
     const std::unique_ptr<Simulator> simulator = makeSimulator(group.model, group.times, group.modes);
     simulator->checkStart();
     engines.insert(simulator->describeEngine());
     for (const std::string& jump : listJumps(group.model.system)) {
-      jumps.insert(jump);
+      remarks.insert("steps become small: " + jump);
+    }
+    for (const std::string& angle : listDegrees(group.model)) {
+      remarks.insert(angle);
     }
     machine = machine.empty() ? simulator->describeModel() : machine;
   }
   for (const std::string& unused : listUnusedParameters(tree)) {
     std::cout << "# " << unused << '\n';
   }
-  for (const std::string& jump : jumps) {
-    std::cout << "# steps become small: " << jump << '\n';
+  for (const std::string& remark : remarks) {
+    std::cout << "# " << remark << '\n';
   }
   for (const std::string& engine : engines) {
     std::cout << "# solver: " << engine << '\n';

@@ -14,6 +14,7 @@
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/inference/direct_inference.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 
@@ -71,7 +72,7 @@ Eigen::VectorXd makePoint(const ModelSpec& model, const std::vector<ParameterVal
 }
 
 std::string makeModesCsv(const ResponseLayout& layout, const Eigen::VectorXd& response) {
-  std::string csv = "mode,natural_frequency,damping_ratio\n";
+  std::string csv = "mode,frequency,damping_ratio\n";
   for (int i = 0; i < layout.modes; ++i) {
     csv += std::to_string(i + 1) + "," + toText(response[layout.getFrequencyRow(i)]) + "," +
            toText(response[layout.getDampingRow(i)]) + "\n";
@@ -97,6 +98,19 @@ std::string makeCsv(const ResponseLayout& layout, const Eigen::VectorXd& respons
          (modes ? makeModesCsv(layout, response) : "");
 }
 
+/// As infer reads them: modes beside outputs in a table of their own.
+void writeFiles(const std::string& path, const ExperimentSpec& experiment, const ResponseLayout& layout,
+                const Eigen::VectorXd& response) {
+  if (layout.times.size() == 0 || layout.modes == 0) {
+    writeTextFile(path, makeCsv(layout, response));
+    return;
+  }
+  const std::filesystem::path modes = findModesFile(path, experiment.measurement);
+  writeTextFile(path, makeOutputsCsv(layout, response));
+  writeTextFile(modes, makeModesCsv(layout, response));
+  std::cerr << "Modes: " << modes.string() << "\n";
+}
+
 }  // namespace
 
 void simulate(const SimulateArguments& arguments) {
@@ -120,11 +134,10 @@ void simulate(const SimulateArguments& arguments) {
     response = addNoise(response, ResponseNoise(experiment.noise, simulator.getLayout()),
                         RandomStream(experiment.seed, RandomPurpose::kSingleNoise));
   }
-  const std::string csv = makeCsv(simulator.getLayout(), response);
   if (arguments.csv.empty()) {
-    std::cout << csv;
+    std::cout << makeCsv(simulator.getLayout(), response);
   } else {
-    writeTextFile(arguments.csv, csv);
+    writeFiles(arguments.csv, experiment, simulator.getLayout(), response);
   }
 }
 

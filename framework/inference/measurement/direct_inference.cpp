@@ -1,7 +1,10 @@
 #include "framework/inference/measurement/direct_inference.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
@@ -10,6 +13,7 @@
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/models/model_remarks.hpp"
 #include "framework/simulation/team_simulator.hpp"
 
 namespace twinmap {
@@ -39,6 +43,38 @@ bool areSame(const std::vector<SignalSpec>& signals, const std::vector<SignalSpe
                       return std::equal(signal.tables.begin(), signal.tables.end(), other.tables.begin(),
                                         other.tables.end(), same_table);
                     });
+}
+
+bool areSame(const std::optional<Name>& name, const std::optional<Name>& other) {
+  return name.has_value() == other.has_value() && (!name || name->text == other->text);
+}
+
+/// Throws where a table of modes lacks all that a feature asks for, as where a column has another name.
+void requireModes(const AvailableFeatures& found, const MeasurementReader& reader,
+                  const std::string& source) {
+  const ResponseLayout& layout = reader.getLayout();
+  const auto is_missing = [&](Eigen::Index first) {
+    return found.response.segment(first, layout.modes).array().isNaN().all();
+  };
+  if (layout.modes == 0 || found.response.size() != layout.getRowCount()) {
+    return;
+  }
+  const bool no_frequencies = is_missing(layout.getFrequencyRow(0)),
+             no_ratios = is_missing(layout.getDampingRow(0));
+  for (const FeatureSpec& feature : reader.getExperiment().features) {
+    const auto* modes = std::get_if<ModesFeatureSpec>(&feature);
+    const bool lacks_all = modes != nullptr && no_frequencies != no_ratios &&
+                           ((modes->frequencies && no_frequencies) || (modes->damping_ratios && no_ratios));
+    if (lacks_all) {
+      const char* column = no_frequencies ? "frequency" : "damping_ratio";
+      const char* key = no_frequencies ? "frequencies" : "damping_ratios";
+      throw MeasurementError(
+          fmt::format("{}: its table of modes has no numbers in a column '{}', which features ask for; name "
+                      "the column so, "
+                      "or write modes: {{..., {}: false}}",
+                      source, column, key));
+    }
+  }
 }
 
 /// One measurement is inferred at a time: all threads simulate for it.
@@ -92,14 +128,30 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   return infer(table, start, found, known);
 }
 
+std::optional<ExperimentSpec> DirectInference::followTable(const Table& table,
+                                                           std::optional<double> start) const {
+  const ExperimentSpec& own = reader_.getExperiment();
+  const bool may_have_modes =
+      reader_.getLayout().modes > 0 && reader_.getLayout().times.size() > 0 && !own.measurement.modes;
+  const std::filesystem::path modes = findModesFile(table.source, own.measurement);
+  if (!may_have_modes || !std::filesystem::exists(modes)) {
+    return reader_.follow(table, start);
+  }
+  ExperimentSpec beside = own;
+  beside.measurement.modes = Name{modes.filename().string(), {}};
+  std::optional<ExperimentSpec> followed = MeasurementReader(beside).follow(table, start);
+  return followed ? followed : std::make_optional(std::move(beside));
+}
+
 DirectInference::LikeRecording* DirectInference::follow(const Table& table, std::optional<double> start) {
-  std::optional<ExperimentSpec> experiment = reader_.follow(table, start);
+  std::optional<ExperimentSpec> experiment = followTable(table, start);
   if (!experiment) {
     return nullptr;
   }
   const ExperimentSpec* last = followed_ ? &followed_->reader.getExperiment() : nullptr;
   if (last == nullptr || !areSame(last->features, experiment->features) ||
-      !areSame(last->model.excitation, experiment->model.excitation)) {
+      !areSame(last->model.excitation, experiment->model.excitation) ||
+      !areSame(last->measurement.modes, experiment->measurement.modes)) {
     followed_ = std::make_unique<LikeRecording>(std::move(*experiment), options_);
   }
   return followed_.get();
@@ -107,6 +159,7 @@ DirectInference::LikeRecording* DirectInference::follow(const Table& table, std:
 
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
                                            const AvailableFeatures& found, const Eigen::VectorXd& known) {
+  requireModes(found, reader_, table.source);
   std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
   if (found.stated.isGiven()) {
     own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(),
@@ -121,7 +174,17 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
     return inferred;
   }
   inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
+  inferred.against = listAgainst(inferred);
   return inferred;
+}
+
+std::vector<std::string> DirectInference::listAgainst(const InferredMeasurement& inferred) const {
+  const std::string status = listStatuses(inferred).front();
+  const bool explains_nothing = status == getNotice(Notice::kNotSimulated).name ||
+                                status == getNotice(Notice::kModelMismatch).name ||
+                                status == getNotice(Notice::kUnreliable).name;
+  return explains_nothing && inferred.fault.empty() ? listModelRemarks(reader_.getExperiment().model)
+                                                    : std::vector<std::string>{};
 }
 
 bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
@@ -163,6 +226,11 @@ std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, co
                                         static_cast<Eigen::Index>(found.available.size()));
   };
   return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
+}
+
+std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec) {
+  return spec.modes ? measurement.parent_path() / spec.modes->text
+                    : std::filesystem::path(measurement).replace_extension(".modes.csv");
 }
 
 InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {

@@ -203,6 +203,9 @@ void addRecording(const InferredMeasurement& inferred, Json& json) {
   if (!inferred.remarks.empty()) {
     json["remarks"] = inferred.remarks;
   }
+  if (!inferred.against.empty()) {
+    json["against_model"] = inferred.against;
+  }
   if (!inferred.left_out.empty()) {
     json["left_out"] = inferred.left_out;
   }
@@ -276,6 +279,13 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   addRecording(inferred, json);
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);
+  }
+  for (const NuisanceEstimate& one : listNuisance(inferred)) {
+    json["nuisance"][one.name] = {{"mean", one.mean},
+                                  {"sd", one.stddev},
+                                  {"lower", one.lower95},
+                                  {"upper", one.upper95},
+                                  {"unit", one.unit}};
   }
   if (inferred.quantities) {
     json["derived"] = toJson(deriveFrom(inferred.quantities.get(), estimate));

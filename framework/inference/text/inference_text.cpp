@@ -52,7 +52,8 @@ void addRows(const std::vector<DerivedValue>& derived, std::vector<Row>& rows) {
 
 /// `quantities`: null where nothing is derived.
 std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
-                      const DerivedQuantities* quantities) {
+                      const DerivedQuantities* quantities,
+                      const std::vector<NuisanceEstimate>& nuisance = {}) {
   std::vector<Row> rows;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
@@ -60,6 +61,12 @@ std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>
                            estimate.findIntervals(i, Coverage::k95)));
   }
   addRows(deriveFrom(quantities, estimate), rows);
+  for (const NuisanceEstimate& one : nuisance) {
+    ParameterSpec shown;
+    shown.name.text = one.name + " (nuisance)";
+    shown.unit = one.unit;
+    rows.push_back(makeRow(shown, one.mean, one.stddev, {{one.lower95, one.upper95}}));
+  }
   return makeTable(std::move(rows));
 }
 
@@ -121,13 +128,13 @@ std::string describeSearches(const PosteriorEstimate& posterior) {
 /// The simulator's: how it was found, or why it is not the estimate. The surrogate's: its own table.
 std::string describePosterior(const PosteriorEstimate& posterior,
                               const std::vector<ParameterSpec>& parameters,
-                              const DerivedQuantities* quantities, bool is_refined, bool misfits,
+                              const DerivedQuantities* quantities, bool is_refined, bool is_brief,
                               const Asked& asked) {
   const std::string diagnostics = describeDiagnostics(posterior);
   if (!posterior.isReliable() && posterior.fit) {
     const std::string why = posterior.message + " (" + diagnostics + ")";
     return !posterior.fit->isSimulated() ? ""  // not_simulated says it
-           : misfits                     ? explainBriefly(Notice::kUnreliable, why)
+           : is_brief                    ? explainBriefly(Notice::kUnreliable, why)
                                          : explainUnreliable(why, asked);
   }
   if (!posterior.isReliable()) {
@@ -196,7 +203,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text += describeRefined(*inferred.refined);
   }
   if (estimate.isGiven()) {
-    text += makeTable(estimate, parameters, quantities);
+    text += makeTable(estimate, parameters, quantities, listNuisance(inferred));
   }
   for (const std::string& advice : adviseOnRidges(inferred.ridges, parameters)) {
     text += "  " + advice + "\n";
@@ -209,8 +216,11 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
             makeTable(inferred.by_estimator, parameters, quantities);
   }
   if (inferred.posterior) {
-    text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined(),
-                              isMismatch(estimate.statuses), inferred.asked);
+    // bounds that are to be widened are not to be narrowed
+    const bool is_brief = isMismatch(estimate.statuses) ||
+                          (inferred.posterior->fit && !inferred.posterior->fit->beyond.empty());
+    text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined(), is_brief,
+                              inferred.asked);
   }
   return text;
 }

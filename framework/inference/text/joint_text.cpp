@@ -3,6 +3,7 @@
 #include "framework/base/json/json.hpp"
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/escape.hpp"
+#include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/inference/joint_inference.hpp"
@@ -176,6 +177,9 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
     return fillCommands(text + explainNotice(Notice::kNotSimulated, inferred.joint.message), inferred.asked);
   }
   const std::string misfits = describeMisfits(inferred);
+  if (!inferred.beyond.empty()) {
+    text += explainNotice(Notice::kAtBounds, listNames(inferred.beyond));
+  }
   text += fillCommands(misfits + describeAgreement(inferred, parameters, !misfits.empty()), inferred.asked);
   if (isStated(inferred)) {
     text += makeEstimateTable(inferred, parameters);

@@ -38,6 +38,47 @@ std::string listBeyondBounds(const InferredMeasurement& inferred, const Estimate
   return names.empty() ? "a nuisance parameter" : listNames(names);
 }
 
+/// "; so does r, which is derived from it": quantities that change with what lies at its bounds.
+std::string describeDerivedAtBounds(const InferredMeasurement& inferred,
+                                    const std::vector<ParameterSpec>& parameters) {
+  const bool is_known = inferred.quantities && inferred.posterior && inferred.posterior->fit &&
+                        inferred.posterior->fit->isSimulated();
+  if (!is_known) {
+    return "";
+  }
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  const auto p = static_cast<Index>(parameters.size());
+  const Eigen::MatrixXd gradients = inferred.quantities->calcGradients(fit.best.head(p));
+  std::vector<std::string> names;
+  for (Index q = 0; q < gradients.rows(); ++q) {
+    for (Index i = 0; i < p; ++i) {
+      const std::string& name = parameters[static_cast<std::size_t>(i)].name.text;
+      if (gradients(q, i) != 0.0 &&
+          std::find(fit.beyond.begin(), fit.beyond.end(), name) != fit.beyond.end()) {
+        names.push_back(inferred.quantities->getSpecs()[static_cast<std::size_t>(q)].name.text);
+        break;
+      }
+    }
+  }
+  return names.empty() ? "" : "; it decides " + listNames(names) + " as well, derived from it";
+}
+
+std::string explainAtBounds(const InferredMeasurement& inferred, const Estimate& estimate,
+                            const std::vector<ParameterSpec>& parameters) {
+  std::string text = explainNotice(Notice::kAtBounds, listBeyondBounds(inferred, estimate, parameters));
+  return text.insert(text.find('\n'), describeDerivedAtBounds(inferred, parameters));
+}
+
+/// Whether the best fit lies at the bounds of all parameters: these say nothing then.
+bool areAllAtBounds(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters) {
+  const auto lies_there = [&](const ParameterSpec& parameter) {
+    const std::vector<std::string>& beyond = inferred.posterior->fit->beyond;
+    return std::find(beyond.begin(), beyond.end(), parameter.name.text) != beyond.end();
+  };
+  return inferred.posterior && inferred.posterior->fit &&
+         std::all_of(parameters.begin(), parameters.end(), lies_there);
+}
+
 /// One explanation a parameter that is hardly better known than before.
 std::string explainUninformative(const InferredMeasurement& inferred, const Estimate& estimate,
                                  const std::vector<ParameterSpec>& parameters) {
@@ -160,7 +201,8 @@ bool isMismatch(const std::optional<Trust>& trust) {
                       trust->statuses.end();
 }
 
-std::string explainMismatch(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& features) {
+std::string explainMismatch(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
+                            const std::vector<FeatureInfo>& features) {
   if (!inferred.fault.empty()) {
     return explainBriefly(Notice::kModelMismatch, inferred.fault + " (this explains 99 % of the misfit)");
   }
@@ -175,7 +217,9 @@ std::string explainMismatch(const InferredMeasurement& inferred, const std::vect
       isMismatch(inferred.trust)
           ? fmt::format("{}, {}", kNoValuesFit, describeAnomaly(*inferred.trust, features))
           : describeResidual(*inferred.posterior->fit, features);
-  const std::string happened = where + describeMissing(inferred);
+  const bool all = areAllAtBounds(inferred, parameters);
+  const std::string happened =
+      (all ? "the best fit lies at the bounds of all parameters: " : "") + where + describeMissing(inferred);
   return inferred.asked.diagnoses ? explainBriefly(Notice::kModelMismatch, happened)
                                   : explainNotice(Notice::kModelMismatch, happened);
 }
@@ -255,13 +299,13 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
                           const std::vector<FeatureInfo>& features) {
   const auto is = [&](Notice notice) { return status == getNotice(notice).name; };
   if (is(Notice::kModelMismatch)) {
-    return explainMismatch(inferred, features);
+    return explainMismatch(inferred, parameters, features);
   }
   if (is(Notice::kOutsideTraining)) {
     return explainNotice(Notice::kOutsideTraining, inferred.trust->distance);
   }
   if (is(Notice::kAtBounds)) {
-    return explainNotice(Notice::kAtBounds, listBeyondBounds(inferred, estimate, parameters));
+    return explainAtBounds(inferred, estimate, parameters);
   }
   if (is(Notice::kUninformative)) {
     return explainUninformative(inferred, estimate, parameters);
@@ -297,6 +341,20 @@ std::string dropRemedies(const std::string& explained) {
     text += line.rfind("    ", 0) == 0 ? "" : line + "\n";
   }
   return text;
+}
+
+/// Whether the remedy of a status goes against that of another beside it, or is the same in other words:
+/// bounds are not to be widened where they are to exclude, nor twice.
+bool isAdvisedElse(const std::string& status, const std::vector<std::string>& statuses) {
+  const std::vector<std::pair<Notice, Notice>> pairs{{Notice::kAtBounds, Notice::kMultimodal},
+                                                     {Notice::kOutsideTraining, Notice::kAtBounds},
+                                                     {Notice::kUncalibrated, Notice::kNonlinear},
+                                                     {Notice::kSensorOffset, Notice::kClockFault},
+                                                     {Notice::kNoiseColoured, Notice::kClockFault}};
+  return std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    return status == getNotice(pair.first).name &&
+           std::find(statuses.begin(), statuses.end(), getNotice(pair.second).name) != statuses.end();
+  });
 }
 
 /// Whether the residual is tested with noise, spikes or a clock other than stated: the statuses say what.
@@ -339,12 +397,18 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
   const Estimate estimate = selectEstimate(inferred);
   std::string text =
       inferred.source + ": " + describeJudgement(inferred, joinStatuses(estimate.statuses, ", ")) + "\n";
+  for (const std::string& against : inferred.against) {
+    text += "  " + against + "\n";
+  }
   const bool misfits = isMismatch(estimate.statuses);
   for (const std::string& status : estimate.statuses) {
     const std::string explained = explainStatus(status, inferred, estimate, parameters, features);
-    if (!misfits || status == getNotice(Notice::kModelMismatch).name) {
+    const bool is_first = status == getNotice(Notice::kModelMismatch).name ||
+                          (status == getNotice(Notice::kAtBounds).name && inferred.fault.empty() &&
+                           areAllAtBounds(inferred, parameters));
+    if ((!misfits || is_first) && !isAdvisedElse(status, estimate.statuses)) {
       text += explained;
-    } else if (inferred.fault.empty()) {
+    } else if (inferred.fault.empty() || status == getNotice(Notice::kAtBounds).name) {
       text += dropRemedies(explained);
     }
   }

@@ -13,6 +13,7 @@
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/tolerances/onset_speeds.hpp"
+#include "framework/models/model_remarks.hpp"
 
 namespace twinmap {
 namespace {
@@ -104,8 +105,21 @@ void warnOfCoarse(const ModelSpec& model, const IntegrationError& error, const T
                   enough.error.isNegligible() ? "would do" : "are the best that can be had"));
 }
 
+/// Why an error is so large: " (the model is unstable ...)", where it moves an estimate beyond all sense.
+std::string describeCause(const ModelSpec& model, const IntegrationError& error) {
+  constexpr double kSensible = 1e3;  // sds: what tolerances of digits too few cost a stable machine
+  const std::vector<std::string> remarks =
+      error.shift > kSensible ? listModelRemarks(model) : std::vector<std::string>{};
+  return remarks.empty() ? "" : remarks.front();
+}
+
 /// One line: from what, to what, why; what is left where that is not negligible.
 void logTightened(const ModelSpec& model, const IntegrationError& error, const Tightened& taken) {
+  const std::string cause = describeCause(model, error);
+  if (!cause.empty()) {
+    logWarning(fmt::format("{}; integration tolerances tightened to {}", cause, describe(taken.simulation)));
+    return;
+  }
   const std::string text =
       fmt::format("integration tolerances tightened to {}; with {} the error of the integration {}",
                   describe(taken.simulation), describe(model.simulation), describe(error, model.parameters));

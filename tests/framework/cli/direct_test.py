@@ -55,6 +55,49 @@ class Direct(FolderTestCase):
             self.assertAlmostEqual(covariance[i, i] ** 0.5 / estimate["sd"], 1)
         self.assertGreater(found["posterior"]["effective_sample_size"], 100)
 
+    def test_says_where_an_unstable_model_grows_and_which_sign_to_look_at(self):
+        """A spring and a damper that push, each named by its place."""
+        for section, key in (("springs", "stiffness"), ("dampers", "damping")):
+            with self.subTest(section):
+                experiment = yaml.safe_load(CART.read_text())
+                element = experiment["system"][section][0]
+                element[key] = f"-({element[key]})"
+                wrong = self.folder / f"wrong_{section}.yaml"
+                wrong.write_text(yaml.safe_dump(experiment))
+                result = call("infer", wrong, self.measured)
+                self.assertRegex(
+                    result.stdout + result.stderr,
+                    rf"the model is unstable about its equilibrium: x grows e-fold in [0-9.]+ s, as a force rises "
+                    rf"with .*the sign of .*wrong_{section}.yaml:\d+:\d+: system.{section}\[0\].{key}",
+                )
+                self.assertNotRegex(result.stderr, r"by up to [0-9.]+e\+")
+
+    def test_asks_whether_an_angle_of_more_than_a_turn_is_in_degrees(self):
+        experiment = yaml.safe_load(CART.read_text())
+        law = experiment["system"]["force_laws"][0]
+        for call_text in ("sin(30)", "cos(45.5)"):
+            with self.subTest(call_text):
+                tilted = self.folder / "tilted.yaml"
+                changed = json.loads(json.dumps(experiment))
+                changed["system"]["force_laws"][0]["force"] = f"{law['force']} - 9.81 * {call_text}"
+                tilted.write_text(yaml.safe_dump(changed))
+                says = f"{call_text[:-1]}*pi/180)"
+                self.assertIn(says, call("check", tilted).stdout)
+                self.assertIn(says, call("infer", tilted, self.measured).stdout)
+        self.assertNotIn("pi/180", call("check", CART).stdout)
+
+    def test_says_of_a_force_that_jumps_what_to_write(self):
+        experiment = yaml.safe_load(CART.read_text())
+        laws = experiment["system"].setdefault("force_laws", [])
+        for sign in ("-40*sign(x_dot)", "-40*sign(x)"):
+            with self.subTest(sign):
+                jumps = self.folder / "jumps.yaml"
+                changed = json.loads(json.dumps(experiment))
+                changed["system"]["force_laws"] = [*laws, {"coordinate": "x", "force": sign}]
+                jumps.write_text(yaml.safe_dump(changed))
+                result = call("infer", jumps, self.measured)
+                self.assertIn(f"{sign[4:]} jumps: ", result.stdout)
+
     def test_leaves_missing_samples_out_and_says_so(self):
         lines = self.measured.read_text().splitlines()
         rows = [line.split(",") for line in lines[1:]]
@@ -225,6 +268,59 @@ class Direct(FolderTestCase):
         result = call(*arguments)
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stdout
+
+    def test_page_of_one_measurement_draws_what_is_measured_over_what_is_fitted(self):
+        """Of a sound recording, of one that lacks samples and of a model that does not fit."""
+        lines = self.measured.read_text().splitlines()
+        lacking = self.folder / "lacking.csv"
+        lacking.write_text("\n".join(lines[:30] + lines[40:]) + "\n")
+        for name, files, says in (
+            ("sound", [self.measured], "measured.csv: ok"),
+            ("lacking", [lacking], "lacking.csv: ok"),
+            ("light", [self.simulate(CART, "light.csv", "system.bodies.cart.mass=0.9")], "model_mismatch"),
+        ):
+            with self.subTest(name):
+                page = self.folder / f"{name}.html"
+                self.infer(CART, *files, "--page", page)
+                text = page.read_text()
+                self.assertIn(says, text)
+                for part in ("x: measured, nominal, updated", "spectrum of the residual"):
+                    self.assertIn(part, text)
+                self.assertEqual("Estimates within their bounds" in text, name != "light")  # where there are some
+        page = self.folder / "two.html"
+        self.infer(CART, self.measured, lacking, "--page", page)
+        text = page.read_text()
+        self.assertIn("Parameters over the measurements", text)
+        self.assertIn("lacking.csv: Responses", text)
+
+    def test_replay_takes_an_experiment_file(self):
+        out = self.folder / "replayed"
+        result = call("replay", CART, self.measured, "--out", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("measured.csv: ok", result.stdout)
+        rows = read_csv(out / "replay.csv")
+        self.assertEqual(len(rows), 100)
+        residual = np.array([float(row["measured"]) - float(row["updated"]) for row in rows]) / 1e-4
+        self.assertLess(abs(np.sqrt((residual**2).mean()) - 1), 0.25)
+        other = self.simulate(CART, "other.csv", *POINT, "seed=5")
+        result = call("replay", CART, other, "--from", self.measured, "--out", out)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        refused = call("replay", CART, self.measured, "--refine", "--out", out)
+        self.assertIn("inferred by simulation alone", refused.stderr)
+
+    def test_prints_nuisance_parameters_with_their_sds(self):
+        experiment = yaml.safe_load(CART.read_text())
+        experiment["nuisance"] = {"x0": {"bounds": [-0.1, 0.1], "unit": "m"}}
+        experiment["initial"] = {"coordinates": {"x": "x0"}}
+        released = self.folder / "released.yaml"
+        released.write_text(yaml.safe_dump(experiment))
+        for start in (0.05, -0.02):
+            with self.subTest(start):
+                measured = self.simulate(released, "released.csv", *POINT, f"nuisance.x0={start}")
+                found = json.loads(self.infer(released, measured, "--json"))["nuisance"]["x0"]
+                self.assertLess(abs(found["mean"] - start), 4 * found["sd"])
+                self.assertLess(found["sd"], 1e-3)
+                self.assertIn("x0 (nuisance)", self.infer(released, measured))
 
     def test_changes_over_measurements_are_named_and_drawn(self):
         files = [

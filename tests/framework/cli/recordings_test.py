@@ -137,6 +137,38 @@ class Modes(FolderTestCase):
         found = self.infer("mode,frequency,damping_ratio", [3, 1], self.frequency[[2, 0]], ["", self.damping[0]])
         self.assertIn("1 of 3 frequencies of modes", found["left_out"])
 
+    def test_a_column_of_another_name_is_an_error(self):
+        """What is left out whole: 'natural_frequency', 'zeta'."""
+        for header, lacks in (("natural_frequency,damping_ratio", "frequency"), ("frequency,zeta", "damping_ratio")):
+            with self.subTest(header):
+                path = self.folder / "named.csv"
+                rows = [f"{f},{d}" for f, d in zip(self.frequency, self.damping)]
+                path.write_text(header + "\n" + "\n".join(rows) + "\n")
+                result = call("infer", self.EXPERIMENT, path)
+                self.assertNotEqual(result.returncode, 0)
+                self.assertIn(f"no numbers in a column '{lacks}'", result.stderr)
+
+    def test_modes_beside_responses_are_read_as_simulate_writes_them(self):
+        """With the name of the file for itself, and with that which the experiment gives."""
+        chain = EXPERIMENTS / "three_mass_chain/frequency_response.yaml"
+        beside = [
+            "noise.modes={frequency: 0.001, damping_ratio: 1e-4}",
+            "features=[{modes: {count: 3}}, {samples: {outputs: [mass1], start: 0, interval: 0.1, count: 100}}]",
+        ]
+        for name, more in (("m.modes.csv", []), ("identified.csv", ["measurement={modes: identified.csv}"])):
+            with self.subTest(name):
+                file = self.folder / "beside.yaml"
+                file.write_text(call("check", "--full", chain, *beside, *more).stdout)
+                result = call("simulate", file, "--noise", "--csv", self.folder / "m.csv", "parameters.k1=930")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertTrue((self.folder / name).exists())
+                result = call("infer", file, self.folder / "m.csv", "--json")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                found = json.loads(result.stdout)
+                self.assertEqual((found["status"], found.get("left_out")), ("ok", None))
+                self.assertLess(abs(found["parameters"]["k1"]["mean"] - 930), 4 * found["parameters"]["k1"]["sd"])
+                (self.folder / name).unlink()
+
 
 class FrequencyResponses(FolderTestCase):
     """The oracle is numpy's solution of the chain's equations at each frequency."""

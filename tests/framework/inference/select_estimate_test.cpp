@@ -137,6 +137,35 @@ PosteriorEstimate makeSimulated() {
   return posterior;
 }
 
+TEST(SelectEstimate, SaysThatItLiesAtBoundsWhateverIsSaidBeside) {
+  InferredMeasurement inferred;
+  inferred.posterior = makeSimulated();
+  inferred.posterior->fit->beyond = {"offset"};  // a nuisance
+  inferred.posterior->fit->test.chi_square_p = 0.0;
+  inferred.posterior->fit->residual = Eigen::VectorXd::Constant(10, 30.0);
+  inferred.posterior->fit->chi_square = 9000.0;
+  EXPECT_EQ(listStatuses(inferred), (Statuses{"model_mismatch", "at_bounds"}));
+  const std::string text = describeTrust(inferred, makeParameters(), {});
+  EXPECT_NE(text.find("  at_bounds: offset lies at its bounds\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("Widen"), std::string::npos) << text;
+  inferred.posterior->message = "few draws carry the weight";
+  EXPECT_EQ(listStatuses(inferred), (Statuses{"model_mismatch", "at_bounds", "unreliable"}));
+}
+
+TEST(SelectEstimate, SaysFirstThatAllParametersLieAtTheirBounds) {
+  InferredMeasurement inferred;
+  inferred.posterior = makeSimulated();
+  SimulatorFit& fit = *inferred.posterior->fit;
+  fit.beyond = {"k", "c"};
+  fit.test.chi_square_p = 0.0;
+  fit.residual = Eigen::Vector2d(850.0, -3.0);
+  fit.largest_feature = "x(0.5 s)";
+  const std::string text = describeTrust(inferred, makeParameters(), {});
+  const std::size_t first = text.find("the best fit lies at the bounds of all parameters: ");
+  const std::size_t second = text.find("  at_bounds: k, c lies at its bounds\n    Widen the bounds of k, c");
+  EXPECT_TRUE(first < second && second != std::string::npos) << text;
+}
+
 TEST(SelectEstimate, TakesThePosteriorOfTheSimulatorBeforeWhatLeastSquaresFound) {
   InferredMeasurement inferred = makeInferred();
   inferred.refined = makeRefined(RefinementStatus::kAccepted);

@@ -52,5 +52,50 @@ TEST(Remedies, OfUncalibratedEstimatesGoOnFromThePosteriorThatIsThere) {
   EXPECT_NE(text.find("--posterior-from simulator.\n"), std::string::npos) << text;
 }
 
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
+/// With one parameter k, which lies at its bounds.
+InferredMeasurement makeAtBounds() {
+  InferredMeasurement inferred;
+  inferred.source = "m.csv";
+  inferred.posterior.emplace();
+  inferred.posterior->source = PosteriorSource::kSimulator;
+  inferred.posterior->fit = SimulatorFit{};
+  inferred.posterior->fit->degrees = 10.0;
+  inferred.posterior->fit->beyond = {"k"};
+  return inferred;
+}
+
+TEST(Remedies, OfStatusesBesideEachOtherDoNotContradict) {
+  ParameterSpec k;
+  k.name.text = "k";
+  k.bounds = {0.0, 2.0, {}};
+  InferredMeasurement several = makeAtBounds();
+  several.posterior->shape = PosteriorShape::kMultimodal;
+  std::string text = describeTrust(several, {k}, {});
+  EXPECT_NE(text.find("at_bounds: k lies at its bounds"), std::string::npos) << text;
+  EXPECT_EQ(count(text, "Widen"), 0U) << text;  // multimodal has bounds exclude
+
+  InferredMeasurement unreliable = makeAtBounds();
+  unreliable.posterior->message = "few draws";
+  unreliable.asked.draws = 8000;
+  text = makeInferenceTable(unreliable, {k}, {});
+  EXPECT_EQ(count(text, "Widen"), 1U) << text;
+  EXPECT_EQ(count(text, "Narrow"), 0U) << text;
+
+  InferredMeasurement outside;
+  outside.by_estimator = {Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1)};
+  outside.trust.emplace();
+  outside.trust->statuses = {TrustStatus::kOutsideTraining, TrustStatus::kAtBounds};
+  text = describeTrust(outside, {k}, {});
+  EXPECT_EQ(count(text, "Widen"), 1U) << text;
+}
+
 }  // namespace
 }  // namespace twinmap

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/base/log/notice.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -46,6 +48,17 @@ TEST(Warnings, CoverageWithinThreeStandardErrorsIsChance) {
   EXPECT_TRUE(collectWarnings(run).empty());
   run.evaluation.metrics[1].coverage95 = 0.915;
   EXPECT_EQ(collectWarnings(run).size(), 1U);
+}
+
+// The fast model is not advised whose errors nobody knows.
+TEST(Warnings, DoNotAdviseWhatAnotherDoubts) {
+  RunSummary run = makeGoodRun();
+  run.notes.warnings = {makeWarning(Notice::kStudentFar, "k", 2.0)};
+  EXPECT_NE(collectWarnings(run)[0].find("Use the surrogate itself"), std::string::npos);
+  run.notes.warnings.push_back(makeWarning(Notice::kSurrogateUncalibrated));
+  for (const std::string& warning : collectWarnings(run)) {
+    EXPECT_EQ(warning.find("Use the surrogate itself"), std::string::npos) << warning;
+  }
 }
 
 // What has been done is not advised.

@@ -10,6 +10,7 @@
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
+#include "framework/models/model_remarks.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/study/diagnosis/diagnosis_page.hpp"
 
@@ -81,6 +82,11 @@ void diagnose(const DiagnoseArguments& arguments) {
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
   const Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
   waiting.clear();
+  if (!diagnosis.before.isExplained()) {
+    for (const std::string& against : listModelRemarks(reader.getExperiment().model)) {
+      std::cerr << "twinmap: " << against << "\n";
+    }
+  }
   std::cout << (arguments.json  ? makeDiagnosisJson(diagnosis, name) + "\n"
                 : arguments.csv ? makeDiagnosisCsv(diagnosis, name)
                                 : makeDiagnosisTable(diagnosis, name));

@@ -6,8 +6,8 @@
 
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/models/mechanism/lanes/instability.hpp"
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
-#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -56,16 +56,6 @@ std::string describeModes(const std::vector<Mode>& modes) {
   return values.empty() ? "none oscillates" : joinFirst(values);
 }
 
-/// Whether what is left alone goes away from there: an eigenvalue grows beyond rounding.
-bool isUnstable(const Eigen::MatrixXd& matrix) {
-  constexpr double kRounding = 1e-6;  // of the largest; double eigenvalues of 0 are as wrong as 1e-8 of it
-  if (matrix.size() == 0 || !matrix.allFinite()) {
-    return false;
-  }
-  const Eigen::VectorXcd eigenvalues = linalg::calcEigenvalues(matrix);
-  return eigenvalues.real().maxCoeff() > kRounding * eigenvalues.cwiseAbs().maxCoeff();
-}
-
 /// What equilibrium and modes do not see: what switches acts between events alone.
 std::string describeLeftOut(const SystemSpec& system) {
   const auto& stops = system.elements.get<Stop>();
@@ -90,9 +80,15 @@ void appendRest(ModelContext& context, const LaneModel& lanes, const VectorXd& b
     const VectorXd equilibrium =
         LaneStart(context.model, lanes, box_center, no_times).solveEquilibrium(center);
     const Eigen::MatrixXd matrix = LaneModes(lanes).calcMatrix(center, equilibrium);
-    lines.push_back(describeLine("equilibrium", describeEquilibrium(context.names, equilibrium) +
-                                                    (isUnstable(matrix) ? " (unstable)" : "")));
     const bool sampled = !context.model.system.controllers.empty();
+    const auto coordinates = static_cast<Index>(context.names.getCoordinateNames().size());
+    const bool has_all = matrix.rows() >= 2 * coordinates;  // of loops it has the freedoms that are left
+    const std::optional<Instability> instability = findInstability(matrix, has_all ? coordinates : 0);
+    lines.push_back(describeLine(
+        "equilibrium", describeEquilibrium(context.names, equilibrium) + (instability ? " (unstable)" : "")));
+    if (instability && has_all && !sampled) {
+      lines.push_back(describeLine(kUnstableLine, describeInstability(*instability, context)));
+    }
     lines.push_back(describeLine("modes", describeModes(calcModes(matrix)) +
                                               (sampled ? ", with the outputs of controllers held" : "")));
   } catch (const SimulationFailure& failure) {

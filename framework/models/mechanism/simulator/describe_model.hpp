@@ -8,6 +8,9 @@
 
 namespace twinmap {
 
+/// Begins the line that says what grows about an unstable equilibrium, and why.
+inline constexpr const char* kUnstableLine = "unstable";
+
 /// What Simulator::describeModel() says of a system: bodies, coordinates, loops, degrees of freedom, states,
 /// and at the centre of the bounds the static equilibrium without excitation with the modes of lowest
 /// frequency. `lanes`: null where they cannot simulate it; then neither loops nor equilibrium are known.
