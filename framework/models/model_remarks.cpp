@@ -6,10 +6,10 @@
 #include <regex>
 #include <set>
 
-#include "framework/experiment/experiment_file.hpp"
-#include "framework/experiment/expression/jumps.hpp"
+#include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/model/jumps.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/models/mechanism/describe_model.hpp"
+#include "framework/models/mechanism/simulator/describe_model.hpp"
 
 namespace twinmap {
 namespace {

@@ -14,7 +14,7 @@
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
-#include "framework/inference/direct_inference.hpp"
+#include "framework/inference/measurement/direct_inference.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 

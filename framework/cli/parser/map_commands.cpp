@@ -90,8 +90,10 @@ void addInfer(CLI::App& app) {
   addRefine(*command, arguments->refine);
   addPosterior(*command, *arguments);
   command
-      ->add_option("--page", arguments->page,
-                   "File for a page (HTML) that draws the parameters over the measurements and names changes")
+      ->add_option(
+          "--page", arguments->page,
+          "File for a page (HTML): measured over fitted, residuals and their spectrum, estimates within "
+          "their bounds; of several measurements the parameters over them")
       ->type_name("FILE");
   command
       ->add_flag("--diagnose", arguments->diagnose,
@@ -109,7 +111,7 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
   command->footer(
       "Estimates the parameters, simulates the updated model, and writes tables and a page with the "
       "measured, nominal and updated responses and their residuals.");
-  command->add_option("RUN", arguments->run, "Folder of a finished run, or its maps.h5")
+  command->add_option("RUN", arguments->run, "Folder of a finished run, its maps.h5, or an experiment file")
       ->required()
       ->option_text(" ");
   command->add_option("MEASUREMENT", arguments->file, "File: CSV, MATLAB .mat or HDF5, as infer takes them")

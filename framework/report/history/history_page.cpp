@@ -95,31 +95,6 @@ DataTable makeProfilesTable(const History& history) {
   return table;
 }
 
-/// Nothing where no profiles were asked for.
-void addProfiles(const History& history, Page& page) {
-  if (std::all_of(history.points.begin(), history.points.end(),
-                  [](const HistoryPoint& point) { return point.profiles.empty(); })) {
-    return;
-  }
-  page.tables[kProfiles] = makeProfilesTable(history);
-  Figure figure{
-      "profiles",
-      "Profile likelihoods",
-      "Each parameter is held at a value, and the others are fitted anew: how much less likely the "
-      "best fit becomes. Above the dashed line at -1.92 is a normal 95 % interval; what stays near 0 "
-      "is a direction that the measurement leaves open.",
-      kProfiles,
-      {},
-      {},
-      0};
-  for (const ParameterSpec& parameter : history.parameters) {
-    figure.panels.push_back({"profile", {{"name", parameter.name.text}, {"label", makeLabel(parameter)}}});
-  }
-  Section section{"profiles", "Profile likelihoods", "", {}};
-  addFigure(std::move(figure), section);
-  page.sections.push_back(std::move(section));
-}
-
 std::string makeEstimatesTable(const History& history) {
   constexpr int kDigits = 6, kStddevDigits = 3;
   std::vector<std::string> headings{isOneFile(history) ? "start [s]" : "measurement", "file", "status"};
@@ -158,10 +133,31 @@ Section makeHistoryVerdict(const History& history, const std::optional<std::vect
 
 }  // namespace
 
-std::string makeHistoryPage(const std::string& title, const History& history,
-                            const std::optional<std::vector<Course>>& courses) {
-  Page page;
-  page.title = title;
+void addProfiles(const History& history, Page& page) {
+  if (std::all_of(history.points.begin(), history.points.end(),
+                  [](const HistoryPoint& point) { return point.profiles.empty(); })) {
+    return;
+  }
+  page.tables[kProfiles] = makeProfilesTable(history);
+  Figure figure{
+      "profiles",
+      "Profile likelihoods",
+      "Each parameter is held at a value, and the others are fitted anew: how much less likely the "
+      "best fit becomes. Above the dashed line at -1.92 is a normal 95 % interval; what stays near 0 "
+      "is a direction that the measurement leaves open.",
+      kProfiles,
+      {},
+      {},
+      0};
+  for (const ParameterSpec& parameter : history.parameters) {
+    figure.panels.push_back({"profile", {{"name", parameter.name.text}, {"label", makeLabel(parameter)}}});
+  }
+  Section section{"profiles", "Profile likelihoods", "", {}};
+  addFigure(std::move(figure), section);
+  page.sections.push_back(std::move(section));
+}
+
+void addHistory(const History& history, const std::optional<std::vector<Course>>& courses, Page& page) {
   page.sections.push_back(makeHistoryVerdict(history, courses));
   page.tables[kTable] = makeHistoryTable(history, courses);
   Figure figure{"history",
@@ -175,12 +171,10 @@ std::string makeHistoryPage(const std::string& title, const History& history,
   for (std::size_t p = 0; p < history.parameters.size(); ++p) {
     figure.panels.push_back(makeHistoryPanel(history, p, courses.has_value()));
   }
-  Section section{"parameters", "Parameters", "", {}};
+  Section section{"history", "Parameters over the measurements", "", {}};
   addFigure(std::move(figure), section);
   section.html += makeFolded("All estimates", makeEstimatesTable(history));
   page.sections.push_back(std::move(section));
-  addProfiles(history, page);
-  return makePage(page);
 }
 
 }  // namespace twinmap

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "framework/inference/inferrer.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 
 namespace twinmap {
 
@@ -47,7 +47,7 @@ struct Replay {
   ReplayOptions options;
   InferredMeasurement inferred;  ///< from options.from
   ResponseLayout layout;
-  Eigen::VectorXd measured, noise_stddev;  ///< rows of the layout
+  Eigen::VectorXd measured, noise_stddev;  ///< rows of the layout; measured: NaN where missing
   ReplayedModel nominal, updated;          ///< at the centre of the box, and at what was inferred
   Eigen::VectorXd lower, upper;            ///< 2.5 % and 97.5 % quantiles of the ensemble, rows of the layout
 };
@@ -56,14 +56,21 @@ struct Replay {
 /// excitation that was measured there, if the excitation is measured. The nuisance parameters of that window
 /// (its initial state, its offset) are fitted to it, for the nominal and for the updated model alike; the
 /// updating parameters are held. The ensemble: `draws` of the updating parameters from the normal
-/// distribution of covariance D R D (GpMap), or of that of an accepted refinement, around the inferred ones,
-/// the nuisance parameters held at those of the updated model. Points are moved into the box. The result does
+/// distribution of covariance D R D (GpMap), or of that of an accepted refinement, or from a posterior, the
+/// nuisance parameters held at those of the updated model. Points are moved into the box. The result does
 /// not depend on `threads`. Throws MeasurementError for a file that cannot be used, std::runtime_error for a
 /// simulation that fails. A refinement that is not accepted leaves the estimator's. Cost: draws + 2
 /// simulations, and those of the searches (refine).
-Replay replay(const Inferrer& inferrer, const ReplayOptions& options);
+///
+/// By an experiment alone: at the times of the recording, whose missing samples are NaN; where some are, or
+/// the noise is unknown, the updated model is the best fit.
+Replay replay(const InferenceSource& source, const ReplayOptions& options);
 
-/// The fits of each output of a response (rows of the layout).
+/// The same of what was inferred from a table already, at options.measurement = options.from.
+Replay replayInferred(const InferenceSource& source, const Table& table, const InferredMeasurement& inferred,
+                      const ReplayOptions& options);
+
+/// The fits of each output of a response (rows of the layout) to the samples that are there (not NaN).
 std::vector<OutputFit> calcFits(const Eigen::VectorXd& measured, const Eigen::VectorXd& response,
                                 const Eigen::VectorXd& noise_stddev, const ResponseLayout& layout);
 

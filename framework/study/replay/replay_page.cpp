@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <sstream>
 
@@ -10,6 +11,7 @@
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/report/estimate_panel.hpp"
@@ -64,20 +66,20 @@ std::vector<std::string> collectWarnings(const Replay& replay) {
   return warnings;
 }
 
-Section makeVerdict(const Inferrer& inferrer, const Replay& replay) {
-  Section section{"verdict", "Verdict", "", {}};
-  const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
-  std::istringstream trust(describeTrust(replay.inferred, parameters, inferrer.getExtractor().getInfos()) +
+Section makeVerdict(const MeasurementReader& reader, const Replay& replay, const std::string& prefix) {
+  Section section{prefix + "verdict", "Verdict", "", {}};
+  const std::vector<ParameterSpec>& parameters = reader.getExperiment().model.parameters;
+  std::istringstream trust(describeTrust(replay.inferred, parameters, reader.getExtractor().getInfos()) +
                            describeMapLimit(replay.inferred, parameters));
   for (std::string line; std::getline(trust, line);) {
     section.html += makeParagraph(line, "class=\"lead\"");
   }
   section.html += makeParagraph(describeFits(replay));
-  const std::vector<ParameterSpec>& inputs = inferrer.getExperiment().model.inputs;
+  const std::vector<ParameterSpec>& inputs = reader.getExperiment().model.inputs;
   std::vector<std::pair<std::string, std::string>> facts{
       {"measurement", describeWindow(replay.options.measurement)},
       {"parameters estimated from", describeWindow(replay.options.from)},
-      {"experiment", inferrer.getExperiment().name.text},
+      {"experiment", reader.getExperiment().name.text},
       {"draws of the band", std::to_string(replay.options.draws)}};
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     facts.emplace_back(makeLabel(inputs[i]),
@@ -89,11 +91,15 @@ Section makeVerdict(const Inferrer& inferrer, const Replay& replay) {
 
 using Cells = std::vector<HtmlCell>;
 
-std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
+std::string makeParameterTable(const MeasurementReader& reader, const Replay& replay) {
   constexpr int kStddevDigits = 3;
-  const std::vector<ParameterSpec>& parameters = inferrer.getExperiment().model.parameters;
+  const std::vector<ParameterSpec>& parameters = reader.getExperiment().model.parameters;
   const bool refined = replay.inferred.refined && replay.inferred.refined->isAccepted();
-  const Estimate& by_estimator = replay.inferred.by_estimator;
+  const Estimate by_estimator =
+      replay.inferred.by_estimator.isGiven() ? replay.inferred.by_estimator : selectEstimate(replay.inferred);
+  if (!by_estimator.isGiven()) {
+    return makeParagraph("Nothing is estimated; the updated model is the best fit.");
+  }
   const Bounds95 bounds = by_estimator.calcBounds95();
   std::vector<std::string> headings{"parameter", "unit", "estimated", "sd", "95 % from", "to"};
   if (refined) {
@@ -120,17 +126,23 @@ std::string makeParameterTable(const Inferrer& inferrer, const Replay& replay) {
 }
 
 std::string makeNuisanceTable(const ModelSpec& model, const Replay& replay) {
+  constexpr int kStddevDigits = 3;
+  const std::vector<NuisanceEstimate> known = listNuisance(replay.inferred);
   std::vector<Cells> rows;
   for (std::size_t n = 0; n < model.nuisance.size(); ++n) {
     const auto i = static_cast<Index>(model.parameters.size() + n);
     rows.push_back({makeTextCell(model.nuisance[n].name.text), makeTextCell(model.nuisance[n].unit),
                     makeShownCell(replay.updated.point[i]), makeShownCell(replay.nominal.point[i])});
+    const bool has_stddev = n < known.size();
+    rows.back().push_back(has_stddev ? makeShownCell(known[n].mean) : makeTextCell(""));
+    rows.back().push_back(has_stddev ? makeShownCell(known[n].stddev, kStddevDigits) : makeTextCell(""));
   }
-  return rows.empty() ? ""
-                      : makeHtmlTable("nuisance-table",
-                                      "Nuisance parameters, fitted to the replayed measurement for either "
-                                      "model, so that the comparison is fair.",
-                                      {"nuisance parameter", "unit", "updated", "nominal"}, rows);
+  return rows.empty()
+             ? ""
+             : makeHtmlTable("nuisance-table",
+                             "Nuisance parameters, fitted to the replayed measurement for either "
+                             "model, so that the comparison is fair.",
+                             {"nuisance parameter", "unit", "updated", "nominal", "estimated", "sd"}, rows);
 }
 
 std::string makeFitHtml(const Replay& replay) {
@@ -189,9 +201,9 @@ std::string makeHelp(const Replay& replay) {
   return help;
 }
 
-Figure makeFigure(const Replay& replay, Index output) {
+Figure makeFigure(const Replay& replay, Index output, const std::string& prefix) {
   const auto o = static_cast<std::size_t>(output);
-  const std::string table = "replay-" + std::to_string(output);
+  const std::string table = prefix + "replay-" + std::to_string(output);
   const ResponseData data{table, replay.layout.output_names[o], replay.layout.output_units[o]};
   constexpr ResponseLook kLook{true, true};
   return {table, replay.layout.output_names[o] + ": measured, nominal, updated",   makeHelp(replay),
@@ -200,17 +212,24 @@ Figure makeFigure(const Replay& replay, Index output) {
 }
 
 /// The spectrum of an output's residual; none where it has no noise or too few times.
-std::optional<Figure> makeSpectrum(const Replay& replay, Index output, Page& page) {
+std::optional<Figure> makeSpectrum(const Replay& replay, Index output, const std::string& prefix,
+                                   Page& page) {
   constexpr Index kMin = 16;
   const Index times = replay.layout.times.size(), first = replay.layout.getRow(output, 0);
-  const VectorXd residual = (replay.measured - replay.updated.response)
-                                .segment(first, times)
-                                .cwiseQuotient(replay.noise_stddev.segment(first, times));
-  if (times < kMin || !residual.allFinite()) {
+  const VectorXd all = (replay.measured - replay.updated.response)
+                           .segment(first, times)
+                           .cwiseQuotient(replay.noise_stddev.segment(first, times));
+  std::vector<Index> there;
+  for (Index i = 0; i < times; ++i) {
+    if (std::isfinite(all[i])) {
+      there.push_back(i);
+    }
+  }
+  if (static_cast<Index>(there.size()) < kMin) {
     return std::nullopt;
   }
-  const ResidualSpectrum spectrum = calcResidualSpectrum(replay.layout.times, residual);
-  const std::string name = "spectrum-" + std::to_string(output);
+  const ResidualSpectrum spectrum = calcResidualSpectrum(replay.layout.times(there), all(there));
+  const std::string name = prefix + "spectrum-" + std::to_string(output);
   DataTable& table = page.tables[name];
   table.add("frequency", std::vector<double>(spectrum.frequency.begin(), spectrum.frequency.end()));
   table.add("power", std::vector<double>(spectrum.power.begin(), spectrum.power.end()));
@@ -226,38 +245,57 @@ std::optional<Figure> makeSpectrum(const Replay& replay, Index output, Page& pag
 }
 
 /// What was estimated beside the bounds, and the tables of all numbers.
-Section makeParameters(const Inferrer& inferrer, const Replay& replay, Page& page) {
-  const ModelSpec& model = inferrer.getExperiment().model;
-  Section section{"parameters", "Parameters", "", {}};
+Section makeParameters(const MeasurementReader& reader, const Replay& replay, const std::string& prefix,
+                       Page& page) {
+  const ModelSpec& model = reader.getExperiment().model;
+  Section section{prefix + "parameters", "Parameters", "", {}};
   const Estimate estimate = selectEstimate(replay.inferred);
-  const Bounds95 bounds = estimate.calcBounds95();
+  const Bounds95 bounds = estimate.isGiven() ? estimate.calcBounds95() : Bounds95{};
   std::vector<ShownEstimate> shown;
   for (Index p = 0; p < estimate.mean.size(); ++p) {
     shown.push_back({estimate.mean[p], estimate.stddev[p], bounds.lower[p], bounds.upper[p]});
   }
-  addFigure(makeEstimateFigure("intervals", "Estimates within their bounds", model.parameters, shown, page),
-            section);
-  section.html += makeParameterTable(inferrer, replay) + makeNuisanceTable(model, replay);
+  if (!shown.empty()) {
+    addFigure(makeEstimateFigure(prefix + "intervals", "Estimates within their bounds", model.parameters,
+                                 shown, page),
+              section);
+  }
+  section.html += makeParameterTable(reader, replay) + makeNuisanceTable(model, replay);
   return section;
+}
+
+/// Whether anything of an output was measured: of a frequency response nothing is over time.
+bool isMeasured(const Replay& replay, Index output) {
+  const Index first = replay.layout.getRow(output, 0);
+  return replay.measured.segment(first, replay.layout.times.size()).array().isFinite().any();
 }
 
 }  // namespace
 
-std::string makeReplayPage(const Inferrer& inferrer, const Replay& replay) {
-  Page page;
-  page.title = "Replay of " + replay.options.measurement.file.filename().string();
-  page.sections.push_back(makeVerdict(inferrer, replay));
-  Section responses{"responses", "Responses", "", {}};
+void addReplay(const MeasurementReader& reader, const Replay& replay, const std::string& prefix, Page& page) {
+  page.sections.push_back(makeVerdict(reader, replay, prefix));
+  Section responses{prefix + "responses", "Responses", "", {}};
   for (Index output = 0; output < replay.layout.getOutputCount(); ++output) {
-    page.tables["replay-" + std::to_string(output)] = makeTable(replay, output);
-    addFigure(makeFigure(replay, output), responses);
-    if (std::optional<Figure> spectrum = makeSpectrum(replay, output, page)) {
+    if (!isMeasured(replay, output)) {
+      continue;
+    }
+    page.tables[prefix + "replay-" + std::to_string(output)] = makeTable(replay, output);
+    addFigure(makeFigure(replay, output, prefix), responses);
+    if (std::optional<Figure> spectrum = makeSpectrum(replay, output, prefix, page)) {
       addFigure(std::move(*spectrum), responses);
     }
   }
-  page.sections.push_back(std::move(responses));
-  page.sections.push_back(makeParameters(inferrer, replay, page));
-  page.sections.push_back({"fit", "Fit", makeFitHtml(replay), {}});
+  if (!responses.figures.empty()) {
+    page.sections.push_back(std::move(responses));
+  }
+  page.sections.push_back(makeParameters(reader, replay, prefix, page));
+  page.sections.push_back({prefix + "fit", "Fit", makeFitHtml(replay), {}});
+}
+
+std::string makeReplayPage(const MeasurementReader& reader, const Replay& replay) {
+  Page page;
+  page.title = "Replay of " + replay.options.measurement.file.filename().string();
+  addReplay(reader, replay, "", page);
   return makePage(page);
 }
 

@@ -8,16 +8,16 @@
 
 namespace twinmap {
 
-void writeReplay(const std::filesystem::path& folder, const Inferrer& inferrer, const Replay& replay) {
+void writeReplay(const std::filesystem::path& folder, const MeasurementReader& reader, const Replay& replay) {
   makeFolders(folder);
   writeTextFile(folder / "replay.csv", makeReplayCsv(replay));
   writeTextFile(folder / "residuals.csv", makeResidualsCsv(replay));
   writeTextFile(folder / "fit.csv", makeCsv(listFits(replay)));
   writeTextFile(folder / "inference.json",
-                makeInferenceJson(replay.inferred, inferrer.getExperiment().model.parameters,
-                                  inferrer.getExtractor().getInfos()) +
+                makeInferenceJson(replay.inferred, reader.getExperiment().model.parameters,
+                                  reader.getExtractor().getInfos()) +
                     "\n");
-  writeTextFile(folder / "report.html", makeReplayPage(inferrer, replay));
+  writeTextFile(folder / "report.html", makeReplayPage(reader, replay));
 }
 
 }  // namespace twinmap

@@ -31,6 +31,15 @@ History makeHistory(double step) {
   return history;
 }
 
+std::string makeHistoryPage(const std::string& title, const History& history,
+                            const std::optional<std::vector<Course>>& courses) {
+  Page page;
+  page.title = title;
+  addHistory(history, courses, page);
+  addProfiles(history, page);
+  return makePage(page);
+}
+
 TEST(History, NamesAChangeAndWhereItBegins) {
   const std::string text = describeCourses(makeHistory(2.0), fitCourses(makeHistory(2.0)));
   EXPECT_EQ(text.find("Over 11 of 12 measurements (a change is false in 1 of 100):\n  k fell by "), 0U)

@@ -24,8 +24,8 @@
 #include "framework/inference/measurement/measurement_stream.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
-#include "framework/report/history/history_page.hpp"
 #include "framework/simulation/simulator_team.hpp"
+#include "framework/study/replay/inferred_page.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -134,11 +134,32 @@ class InferCommand {
         inferred.asked.diagnoses = diagnoses_ && recording;
         waiting.clear();
         print(inferred, diagnoses_ && recording ? &*recording : nullptr);
+        draw(table, inferred);
         ++count_;
       } catch (const std::exception& error) {
         reportError(table.source, source_.getReader().getStatedStart(start), error.what());
       }
     }
+  }
+
+  /// For the page, where one is wanted.
+  void draw(const Table& table, const InferredMeasurement& inferred) {
+    if (page_.empty() || drawn_.size() >= kMostDrawn) {
+      return;
+    }
+    const MeasurementReader& reader = source_.getReader();
+    DrawnMeasurement drawn{starts_.size() > 1 ? nameWindow(inferred.source, inferred.start)
+                                              : inferred.source};
+    try {
+      ReplayOptions options;
+      options.measurement = options.from = {inferred.source, inferred.start};
+      options.known = known_;
+      drawn.replay = replayInferred(source_, table, inferred, options);
+    } catch (const std::exception& error) {
+      drawn.text = makeInferenceTable(inferred, getModel().parameters, reader.getExtractor().getInfos()) +
+                   "not drawn: " + error.what();
+    }
+    drawn_.push_back(std::move(drawn));
   }
 
   Asked describeAsked(const std::string& source, const std::optional<double>& start) const {
@@ -163,7 +184,8 @@ class InferCommand {
     }
     std::cout.flush();
     if (!page_.empty()) {
-      writeTextFile(page_, makeHistoryPage(source_.getExperiment().name.text, history, courses));
+      writeTextFile(page_, makeInferredPage(source_.getExperiment().name.text, source_.getReader(), drawn_,
+                                            history, courses));
       std::cerr << "Page: " << page_ << "\n";
     }
   }
@@ -212,6 +234,7 @@ class InferCommand {
   const InferredPrinter printer_;
   InferHistory history_;
   const std::string page_;
+  std::vector<DrawnMeasurement> drawn_;
   std::vector<std::optional<double>> starts_;
   RowsFile draws_, profile_;
   int count_ = 0, errors_ = 0;

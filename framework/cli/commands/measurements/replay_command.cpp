@@ -22,13 +22,13 @@ double findStart(const MeasurementReader& reader, const std::string& file, std::
              : reader.getStart(readTable(file, reader.listColumns()), start);
 }
 
-ReplayOptions chooseOptions(const ReplayArguments& arguments, const Inferrer& inferrer) {
-  const ExperimentSpec& experiment = inferrer.getExperiment();
+ReplayOptions chooseOptions(const ReplayArguments& arguments, const InferenceSource& source) {
+  const ExperimentSpec& experiment = source.getExperiment();
   ReplayOptions options;
-  options.measurement = {arguments.file, findStart(inferrer.getReader(), arguments.file, arguments.start)};
+  options.measurement = {arguments.file, findStart(source.getReader(), arguments.file, arguments.start)};
   options.from = options.measurement;
   if (!arguments.from.empty()) {
-    options.from = {arguments.from, findStart(inferrer.getReader(), arguments.from, arguments.from_start)};
+    options.from = {arguments.from, findStart(source.getReader(), arguments.from, arguments.from_start)};
   }
   options.from.start = arguments.from_start.value_or(options.from.start);
   options.known = collectKnown(experiment.model.inputs, parseKnownValues(arguments.known));
@@ -47,9 +47,9 @@ fs::path chooseFolder(const ReplayArguments& arguments) {
   return run / "replay" / fs::path(arguments.file).stem();
 }
 
-Replay replayMeasurement(const Inferrer& inferrer, const ReplayOptions& options) {
+Replay replayMeasurement(const InferenceSource& source, const ReplayOptions& options) {
   try {
-    return twinmap::replay(inferrer, options);
+    return twinmap::replay(source, options);
   } catch (const MeasurementError& error) {
     throw std::runtime_error(error.what());
   }
@@ -67,14 +67,14 @@ Asked describeAsked(const ReplayArguments& arguments) {
 }
 
 /// Says what the model most likely lacks, where it does not fit.
-void nameMissing(const Inferrer& inferrer, Replay& replay) {
+void nameMissing(const InferenceSource& source, Replay& replay) {
   InferredMeasurement& inferred = replay.inferred;
   if (inferred.fault.empty() && isMismatch(selectEstimate(inferred).statuses)) {
-    const MeasurementReader& reader = inferrer.getReader();
+    const MeasurementReader& reader = source.getReader();
     const MeasuredWindow& from = replay.options.from;
     const Table table = readTable(from.file.string(), reader.listColumns(), MissingCells::kKeep);
     inferred.missing = findMissingTerm(
-        inferrer.getExperiment(), readRecording(reader, table, from.start, replay.options.known), inferred);
+        source.getExperiment(), readRecording(reader, table, from.start, replay.options.known), inferred);
   }
 }
 
@@ -82,16 +82,16 @@ void nameMissing(const Inferrer& inferrer, Replay& replay) {
 
 void replay(const ReplayArguments& arguments) {
   WaitingLine waiting("replay " + nameWindow(arguments.file, arguments.start));
-  const Inferrer inferrer(arguments.run);
-  Replay replay = replayMeasurement(inferrer, chooseOptions(arguments, inferrer));
+  const InferenceSource source(arguments.run);
+  Replay replay = replayMeasurement(source, chooseOptions(arguments, source));
   replay.inferred.asked = describeAsked(arguments);
-  nameMissing(inferrer, replay);
+  nameMissing(source, replay);
   const fs::path folder = chooseFolder(arguments);
-  writeReplay(folder, inferrer, replay);
+  writeReplay(folder, source.getReader(), replay);
   waiting.clear();
-  std::cout << describeTrust(replay.inferred, inferrer.getExperiment().model.parameters,
-                             inferrer.getExtractor().getInfos())
-            << describeMapLimit(replay.inferred, inferrer.getExperiment().model.parameters) << "\n"
+  std::cout << describeTrust(replay.inferred, source.getExperiment().model.parameters,
+                             source.getReader().getExtractor().getInfos())
+            << describeMapLimit(replay.inferred, source.getExperiment().model.parameters) << "\n"
             << makeFitTable(replay);
   std::cout.flush();
   std::cerr << "Report: " << (folder / "report.html").string()
