@@ -69,6 +69,20 @@ void add(FoundSamples& found, double time) {
   ++found.count;
 }
 
+/// Where a counter fired twice: steps that are short beside the ten about them, which may grow as a wheel
+/// slows down.
+void findShortSteps(const VectorXd& steps, ColumnLook& look, const VectorXd& times) {
+  constexpr double kShort = 0.2;
+  constexpr Index kAbout = 5;
+  for (Index i = 0; i < steps.size(); ++i) {
+    const Index first = std::max<Index>(0, i - kAbout), last = std::min(steps.size() - 1, i + kAbout);
+    if (steps[i] > 0.0 && steps[i] < kShort * calcMedian(steps.segment(first, last - first + 1))) {
+      look.shortest_step = look.short_steps.count == 0 ? steps[i] : std::min(look.shortest_step, steps[i]);
+      add(look.short_steps, times[i]);
+    }
+  }
+}
+
 void lookAtSteps(const VectorXd& times, ColumnLook& look) {
   constexpr double kLongest = 1.5, kMost = 0.9;
   look.step = calcMedianStep(times);
@@ -76,9 +90,11 @@ void lookAtSteps(const VectorXd& times, ColumnLook& look) {
   for (Index i = 0; i < steps.size(); ++i) {
     if (steps[i] > kLongest * look.step) {
       add(look.gaps, times[i]);
+      look.gaps.times.push_back(times[i]);
       look.longest_gap = std::max(look.longest_gap, steps[i]);
     }
   }
+  findShortSteps(steps, look, times);
   VectorXd spread = (steps.array() - look.step).abs() / look.step;
   const auto most = static_cast<Index>(kMost * static_cast<double>(spread.size() - 1));
   std::nth_element(spread.data(), spread.data() + most, spread.data() + spread.size());
@@ -88,6 +104,21 @@ void lookAtSteps(const VectorXd& times, ColumnLook& look) {
 /// How far a sample is off the cubic through its four neighbours, of evenly spaced ones.
 double calcDeviation(const VectorXd& values, Index i) {
   return values[i] - (4.0 * (values[i - 1] + values[i + 1]) - values[i - 2] - values[i + 2]) / 6.0;
+}
+
+/// Whether what jumps about a sample is back within three: a step stays.
+bool comesBack(const VectorXd& values, Index i) {
+  constexpr Index kWithin = 3;
+  constexpr double kBack = 0.5;
+  const double before = values[i - 2];
+  const double jump = std::max(std::abs(values[i] - before), std::abs(values[i + 1] - before));
+  for (Index j = i + 1; j <= std::min(i + kWithin, values.size() - 1); ++j) {
+    if (std::abs(values[j] - before) < kBack * jump &&
+        (j > i + 1 || std::abs(values[i] - before) >= kBack * jump)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void lookAtNoise(const VectorXd& times, const VectorXd& values, ColumnLook& look) {
@@ -105,15 +136,62 @@ void lookAtNoise(const VectorXd& times, const VectorXd& values, ColumnLook& look
       std::max(kSpike * std::max(look.noise, look.resolution), kLeastOfRange * (look.largest - look.least));
   for (Index i = 0; i < count; ++i) {
     const double before = i > 0 ? deviations[i - 1] : 0.0, after = i + 1 < count ? deviations[i + 1] : 0.0;
-    if (deviations[i] > least && deviations[i] > before && deviations[i] >= after) {
+    if (deviations[i] > least && deviations[i] > before && deviations[i] >= after &&
+        comesBack(values, i + 2)) {
       add(look.spikes, times[i + 2]);
     }
   }
 }
 
+/// The smallest difference of two values, and how many differ.
+struct Levels {
+  double finest = 0.0;
+  Index different = 1;
+};
+
+Levels findLevels(VectorXd values) {
+  constexpr double kRounding = 1e-9;  // of the range: of multiples that were computed
+  std::sort(values.begin(), values.end());
+  const double least = kRounding * (values[values.size() - 1] - values[0]);
+  Levels levels{std::numeric_limits<double>::infinity()};
+  for (Index i = 1; i < values.size(); ++i) {
+    const double difference = values[i] - values[i - 1];
+    levels.different += difference > least ? 1 : 0;
+    levels.finest = difference > least ? std::min(levels.finest, difference) : levels.finest;
+  }
+  return levels;
+}
+
+/// The smallest difference of two values, where few occur.
+double findResolution(const VectorXd& values) {
+  constexpr double kFew = 0.5;  // of the samples
+  const Levels levels = findLevels(values);
+  return levels.different > 1 &&
+                 static_cast<double>(levels.different) < kFew * static_cast<double>(values.size())
+             ? levels.finest
+             : 0.0;
+}
+
+/// Whether the parabola through the three samples beside a run leads beyond it two samples on: before it, or
+/// with step -1 behind it. resolution: of the samples, half of which is weighed by 6, -8, 3 and -1.
+bool leadsBeyond(const VectorXd& values, Index beside, Index step, double extreme, double resolution) {
+  if (beside - 2 * step < 0 || beside - 2 * step >= values.size()) {
+    return false;
+  }
+  constexpr double kRounding = 0.5 * (6.0 + 8.0 + 3.0 + 1.0);
+  const double v1 = values[beside], v2 = values[beside - step], v3 = values[beside - 2 * step];
+  const double away = extreme - v1, led = 6.0 * v1 - 8.0 * v2 + 3.0 * v3 - extreme;
+  return away * led > 0.0 && std::abs(led) > kRounding * resolution;
+}
+
 /// Samples at an extreme in runs of three or more, but for those at either end of the record, and for those
-/// that a sensor of this resolution shows where the signal turns.
-FoundSamples findClipped(const VectorXd& times, const VectorXd& values, double extreme, double resolution) {
+/// that a sensor of this resolution shows where the signal turns. Samples with noise are never the same;
+/// without it they are at the top of a swing and in a square wave too.
+FoundSamples findClipped(const VectorXd& times, const VectorXd& values, double extreme,
+                         const ColumnLook& look) {
+  const double resolution = look.resolution;
+  const double finest = findLevels(values).finest;
+  const bool is_noisy = look.noise > 3.0 * finest;
   constexpr Index kRun = 3;
   constexpr double kSlack = 1e-9, kStep = 1.5;
   const double slack = kSlack * (values.maxCoeff() - values.minCoeff());
@@ -124,29 +202,15 @@ FoundSamples findClipped(const VectorXd& times, const VectorXd& values, double e
     while (end < values.size() && std::abs(values[end] - extreme) <= slack) {
       ++end;
     }
-    if (end - i >= kRun && i > 0 && end < values.size() && (leaves(i - 1) || leaves(end))) {
+    const bool is_run = end - i >= kRun && i > 0 && end < values.size() && (leaves(i - 1) || leaves(end));
+    if (is_run && (is_noisy || leadsBeyond(values, i - 1, 1, extreme, finest) ||
+                   leadsBeyond(values, end, -1, extreme, finest))) {
       found.first = found.count == 0 ? times[i] : found.first;
       found.count += end - i;
     }
     i = std::max(end, i + 1);
   }
   return found;
-}
-
-/// The smallest difference of two values, where few occur.
-double findResolution(VectorXd values) {
-  constexpr double kFew = 0.5;  // of the samples
-  std::sort(values.begin(), values.end());
-  double smallest = std::numeric_limits<double>::infinity();
-  Index different = 1;
-  for (Index i = 1; i < values.size(); ++i) {
-    const double difference = values[i] - values[i - 1];
-    different += difference > 0.0 ? 1 : 0;
-    smallest = difference > 0.0 ? std::min(smallest, difference) : smallest;
-  }
-  return different > 1 && static_cast<double>(different) < kFew * static_cast<double>(values.size())
-             ? smallest
-             : 0.0;
 }
 
 /// Without a unit a signal of the range of a turn may be an angle in rad or degrees. Returns the values,
@@ -183,8 +247,8 @@ ColumnLook lookAt(const Column& column, const VectorXd& times) {
   const VectorXd at = times(there), values = column.values(there);
   look.samples = values.size();
   look.missing = times.size() - look.samples;
-  look.gaps.first = look.spikes.first = look.at_least.first = look.at_largest.first = look.turns.first =
-      kNowhere;
+  look.gaps.first = look.short_steps.first = look.spikes.first = look.at_least.first = look.at_largest.first =
+      look.turns.first = kNowhere;
   if (values.size() < 2) {
     return look;
   }
@@ -195,8 +259,8 @@ ColumnLook lookAt(const Column& column, const VectorXd& times) {
   if (!look.is_constant) {
     look.resolution = findResolution(values);
     lookAtNoise(at, lookAtTurns(at, values, look), look);
-    look.at_least = findClipped(at, values, look.least, look.resolution);
-    look.at_largest = findClipped(at, values, look.largest, look.resolution);
+    look.at_least = findClipped(at, values, look.least, look);
+    look.at_largest = findClipped(at, values, look.largest, look);
   }
   return look;
 }

@@ -13,6 +13,7 @@ namespace twinmap {
 struct FoundSamples {
   Eigen::Index count = 0;
   double first = 0.0;
+  std::vector<double> times{};  ///< of all, where each is told
 };
 
 /// What a column looks like, without a model.
@@ -26,6 +27,8 @@ struct ColumnLook {
   double step_spread = 0.0;           ///< largest deviation from it of 9 steps in 10, over it
   FoundSamples gaps;                  ///< steps of more than 1.5 median ones
   double longest_gap = 0.0;           ///< s
+  FoundSamples short_steps;           ///< of less than a fifth of those about them: double triggers?
+  double shortest_step = 0.0;         ///< s, of these
   FoundSamples spikes;                ///< more than 20 noise standard deviations off their neighbours
   FoundSamples at_least, at_largest;  ///< samples in runs of 3 or more at the extremes
   FoundSamples turns;                 ///< jumps by a whole turn
@@ -52,9 +55,11 @@ struct TableLook {
 ///
 /// Noise: fourth differences of a smooth signal that is sampled often enough vanish, those of white noise of
 /// sd s have the sd sqrt(70) s; s is from their median, so that spikes do not count. Of a signal with few
-/// samples a period it is too large. A spike is 20 s off the cubic through its four neighbours, and further
-/// than they are. Samples at an extreme count as clipped in runs of three, but for those at either end of the
-/// record, where nothing may move yet. O(rows log rows) a column.
+/// samples a period it is too large. A spike is 20 s off the cubic through its four neighbours, further
+/// than they are, and comes back within three samples, as a step does not. Samples at an extreme count as
+/// clipped in runs of three, but for those at either end of the record, where nothing may move yet, and, of a
+/// signal without noise, those that it would not pass by the three samples at either side: flat tops and
+/// square waves. O(rows log rows) a column.
 TableLook look(const Table& table, const TimeBase& base);
 
 std::string makeLookText(const TableLook& look);

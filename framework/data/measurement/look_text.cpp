@@ -13,7 +13,16 @@ namespace {
 
 constexpr int kFewDigits = 4;
 
+/// "2 gaps (0.49 s, 1.2 s)", "7 spikes (first at 0.3 s)"
 std::string describeFirst(const FoundSamples& found, const char* what) {
+  constexpr std::size_t kMostTold = 4;
+  if (found.count > 1 && found.times.size() <= kMostTold && !found.times.empty()) {
+    std::string places;
+    for (const double time : found.times) {
+      places += (places.empty() ? "" : ", ") + describeTime(time);
+    }
+    return fmt::format("{} {}s ({})", found.count, what, places);
+  }
   return fmt::format("{} {}{} ({}{})", found.count, what, found.count == 1 ? "" : "s",
                      found.count == 1 ? "" : "first at ", describeTime(found.first));
 }
@@ -31,6 +40,10 @@ std::vector<std::string> listOddities(const ColumnLook& column) {
   if (column.gaps.count > 0) {
     odd.push_back(describeFirst(column.gaps, "gap") +
                   fmt::format(", the longest {} s", toShortText(column.longest_gap, kFewDigits)));
+  }
+  if (column.short_steps.count > 0) {
+    odd.push_back(describeFirst(column.short_steps, "short step") +
+                  fmt::format(", the shortest {} s: double triggers?", toShortText(column.shortest_step, 2)));
   }
   if (column.step_spread > kJitter) {
     odd.push_back(fmt::format("steps jitter by {} %", toShortText(100.0 * column.step_spread, 2)));
@@ -65,6 +78,13 @@ Json toJson(const FoundSamples& found) {
   return {{"count", found.count}, {"first", found.count > 0 ? Json(found.first) : Json()}};
 }
 
+/// With the place of each.
+Json listTimes(const FoundSamples& found) {
+  Json json = toJson(found);
+  json["at"] = found.times;
+  return json;
+}
+
 Json toJson(const ColumnLook& column) {
   return {{"name", column.name},
           {"unit", column.unit ? Json(*column.unit) : Json()},
@@ -74,8 +94,10 @@ Json toJson(const ColumnLook& column) {
           {"largest", column.largest},
           {"step", column.step},
           {"step_spread", column.step_spread},
-          {"gaps", toJson(column.gaps)},
+          {"gaps", listTimes(column.gaps)},
           {"longest_gap", column.longest_gap},
+          {"short_steps", toJson(column.short_steps)},
+          {"shortest_step", column.shortest_step},
           {"spikes", toJson(column.spikes)},
           {"at_least", toJson(column.at_least)},
           {"at_largest", toJson(column.at_largest)},

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 
@@ -92,6 +93,56 @@ TEST(Look, TakesAnEncoderForWhatItIs) {
   const ColumnLook x = lookAtSine(table);
   EXPECT_NEAR(x.resolution, 0.05, 1e-12);
   EXPECT_EQ(x.at_least.count + x.at_largest.count + x.spikes.count, 0);
+}
+
+/// A column over 4 s at 100 Hz.
+ColumnLook lookAtValues(const std::function<double(double)>& calc) {
+  const VectorXd times = VectorXd::LinSpaced(401, 0.0, 4.0);
+  return look({"m.csv", {{"t", {}, times}, {"x", {}, times.unaryExpr(calc)}}, {}}, {}).columns.at(0);
+}
+
+Index countOdd(const ColumnLook& x) {
+  return x.at_least.count + x.at_largest.count + x.spikes.count;
+}
+
+TEST(Look, TakesFlatTopsAndStepsForWhatTheyAre) {
+  const auto round = [](double value, double step) { return std::round(value / step) * step; };
+  const auto square = [](double t) { return std::fmod(t, 1.0) < 0.5 ? 1.0 : -1.0; };
+  EXPECT_EQ(countOdd(lookAtValues(square)), 0);
+  EXPECT_EQ(countOdd(lookAtValues([](double t) { return std::min(3.0, std::floor(t)); })), 0);  // stairs
+  EXPECT_EQ(countOdd(lookAtValues([&](double t) { return round(std::sin(3.0 * t), 0.002); })), 0);
+  // rests, then moves: steps of a counter
+  EXPECT_EQ(countOdd(lookAtValues([&](double t) { return round(t < 2.2 ? 0.0 : 0.3 * (t - 2.2), 0.01); })),
+            0);
+  EXPECT_GT(lookAtValues([](double t) { return std::min(0.8, std::sin(3.0 * t)); }).at_largest.count, 20);
+  EXPECT_GT(
+      lookAtValues([&](double t) { return round(std::max(-0.5, std::sin(5.0 * t)), 0.001); }).at_least.count,
+      20);
+}
+
+TEST(Look, TellsTwoSamplesThatComeBackFromAStep) {
+  const ColumnLook x =
+      lookAtValues([](double t) { return std::abs(t - 2.005) < 0.008 ? 1.0 : 0.001 * std::sin(t); });
+  EXPECT_EQ(x.spikes.count, 1);
+}
+
+TEST(Look, TellsDoubleTriggersOfACounterAndThePlaceOfEachGap) {
+  std::vector<double> stamps{0.0};
+  for (int turn = 1; turn < 300; ++turn) {  // a wheel that slows down, and fires twice each 50 turns
+    stamps.push_back(stamps.back() + 0.1 + 0.002 * turn);
+    if (turn % 50 == 0) {
+      stamps.push_back(stamps.back() + 0.0016);
+    }
+  }
+  const auto count = static_cast<Index>(stamps.size());
+  const VectorXd times = Eigen::Map<const VectorXd>(stamps.data(), count);
+  const Table table{"m.csv", {{"t", {}, times}, {"q", {}, VectorXd::LinSpaced(count, 0.0, 1.0)}}, {}};
+  const ColumnLook q = look(table, {}).columns.at(0);
+  EXPECT_EQ(q.short_steps.count, 5);
+  EXPECT_NEAR(q.shortest_step, 0.0016, 1e-9);
+  EXPECT_EQ(q.gaps.times.size(), static_cast<std::size_t>(q.gaps.count));
+  EXPECT_NE(makeLookText(look(table, {})).find("5 short steps"), std::string::npos);
+  EXPECT_NE(makeLookJson(look(table, {})).find("\"at\": ["), std::string::npos);
 }
 
 TEST(Look, GuessesTheTimesAndSortsThem) {
