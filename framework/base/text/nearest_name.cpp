@@ -28,6 +28,13 @@ std::size_t calcEditDistance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
+/// In any order: 'kye' is 'key'.
+bool areSameLetters(std::string a, std::string b) {
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  return a == b;
+}
+
 }  // namespace
 
 std::string suggestName(const std::string& name, const std::vector<std::string>& candidates) {
@@ -40,7 +47,10 @@ std::string suggestName(const std::string& name, const std::vector<std::string>&
   std::size_t smallest = std::min(name.size() / 3 + 2, std::max<std::size_t>(name.size(), 1));
   for (const std::string& candidate : candidates) {
     const std::size_t distance = calcEditDistance(toLower(name), toLower(candidate));
-    if (distance < smallest) {
+    // half of it stays: 'ok' is not meant by 'foo'
+    const bool is_near =
+        2 * distance <= std::max(name.size(), candidate.size()) || areSameLetters(name, candidate);
+    if (is_near && distance < smallest) {
       smallest = distance;
       best = candidate;
     }

@@ -41,6 +41,20 @@ std::string compressModel(const std::filesystem::path& run, const CFolderOptions
       measurements.size(), compressed.mean_loss, 100.0 * compressed.stddev_loss);
 }
 
+template <class Bytes>
+double kilo(Bytes bytes) {
+  return static_cast<double>(bytes) / 1000.0;
+}
+
+/// "" where a controller has room for it.
+std::string adviseOnSize(const CSource& source, const CFolderOptions& options) {
+  constexpr double kRoom = 2000.0;  // kB of flash: the largest of usual microcontrollers
+  return kilo(source.map_bytes + source.trust_bytes) < kRoom ? ""
+         : options.c.compressed
+             ? "  More than a controller holds; a network is smaller: inverse_map=network\n"
+             : "  More than a controller holds: --compress, --no-trust, or a network (inverse_map=network)\n";
+}
+
 }  // namespace
 
 void writeCFolder(const std::filesystem::path& run, const std::filesystem::path& folder,
@@ -60,9 +74,10 @@ void writeCFolder(const std::filesystem::path& run, const std::filesystem::path&
   writeTextFile(folder / "Makefile", renameC(std::string(getRuntimeSource("Makefile")), options.c.prefix));
   writeTextFile(folder / "README.md",
                 makeCReadme(model, options.c, source) + (loss.empty() ? "" : "\n" + loss));
-  log << fmt::format("{}: {:.1f} kB of constants for the map, {:.1f} kB for the trust status\n{}",
-                     (folder / (stem + ".c")).string(), static_cast<double>(source.map_bytes) / 1000.0,
-                     static_cast<double>(source.trust_bytes) / 1000.0, loss);
+  log << fmt::format(
+      "{}: {:.1f} kB of C: {:.1f} kB of constants for the map, {:.1f} kB for the trust status\n{}{}",
+      (folder / (stem + ".c")).string(), kilo(source.source.size()), kilo(source.map_bytes),
+      kilo(source.trust_bytes), adviseOnSize(source, options), loss);
 }
 
 }  // namespace twinmap

@@ -71,8 +71,13 @@ CompressedMap compressMap(const GpMap& exact, const CompressionTest& test, doubl
       }
     }
     if (!found) {
-      throw ExperimentError(fmt::format("export --compress: process {} of {} cannot be compressed", p + 1,
-                                        exact.processes.size()));
+      throw ExperimentError(fmt::format(
+          "export --compress: process {} of {} cannot be compressed: {}; export without --compress, or train "
+          "on fewer samples (design.train.samples)",
+          p + 1, exact.processes.size(),
+          process == nullptr
+              ? "it has inducing inputs already"
+              : fmt::format("with fewer inputs its estimates would move by more than {} sd", most)));
     }
   }
   return compressed;
