@@ -162,7 +162,7 @@ class FmuWorker {
   /// Whether the derivatives that the FMU offers are those of its outputs: compared with differences at the
   /// centre of the box, once.
   bool trustsDerivatives() {
-    constexpr double kAgreement = 1e-3;  // of the largest; differences err by less, what is wrong by more
+    constexpr double kTrusted = 1e-3;  // of the largest; differences err by less, what is wrong by more
     if (!trusts_) {
       const Eigen::VectorXd center = calcBoxCenter(collectSampled(job_.model));
       Eigen::MatrixXd exact(response_.size(), center.size()), differences(response_.size(), center.size());
@@ -170,7 +170,7 @@ class FmuWorker {
       trusts_ = simulate(center, path).ok && calcExactly(center, path, exact) &&
                 calcByDifferences(center, path, differences).ok &&
                 ((exact - differences).colwise().lpNorm<Eigen::Infinity>().array() <=
-                 kAgreement * differences.colwise().lpNorm<Eigen::Infinity>().array())
+                 kTrusted * differences.colwise().lpNorm<Eigen::Infinity>().array())
                     .all();
     }
     return *trusts_;
