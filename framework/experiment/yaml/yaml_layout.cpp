@@ -55,11 +55,27 @@ class Levels {
   Level closed_ = {};
 };
 
+/// Of a line that stands where the one before it does.
+std::string describeMixed(const std::string& text, std::size_t column, const Level& level) {
+  if (level.is_item == isItem(text, column)) {
+    return "";
+  }
+  return level.is_item ? "a key stands among the items of a list, " + nameLine(level) +
+                             ": begin it with '- ', or indent it like the keys of its item"
+                       : "an item of a list stands among the keys of a map, " + nameLine(level) +
+                             ": leave its '- ' out, or indent it below its key";
+}
+
 std::string describe(const std::string& text, std::size_t column, Levels& levels, bool has_value) {
   const Level* right = levels.closeRightOf(column);
   const Level* left = levels.getDeepest();
   if (!left) {
     return right ? "the line stands further left than any before it: indent it like " + nameLine(*right) : "";
+  }
+  if (left->column == column && has_value) {
+    if (const std::string mixed = describeMixed(text, column, *left); !mixed.empty() && !right) {
+      return mixed;
+    }
   }
   if (left->column == column) {
     return !right || left->is_item || !isItem(text, column) || !right->is_item

@@ -62,9 +62,15 @@ void requireUncut(const YamlNode& parent, const YamlNode& next) {
   const YamlNode& last = is_list ? parent.items.back() : parent.entries.back().value;
   const std::string& text = last.scalar;
   if (!last.quoted && std::count(text.begin(), text.end(), '(') > std::count(text.begin(), text.end(), ')')) {
+    const std::string behind = next.scalar.empty() ? "..." : next.scalar;
+    if (text.front() == '(' && behind.back() == ')') {
+      throw ExperimentError(
+          last.where, text + ", " + behind,
+          "is not a list: write [" + text.substr(1) + ", " + behind.substr(0, behind.size() - 1) + "]");
+    }
     throw ExperimentError(last.where, text,
                           "ends at a comma: in braces and brackets a text that holds one needs quotes, \"" +
-                              text + ", " + (next.scalar.empty() ? "..." : next.scalar) + "\"");
+                              text + ", " + behind + "\"");
   }
 }
 

@@ -11,9 +11,9 @@ namespace twinmap {
 
 /// A measurement as the page of what was inferred shows it.
 struct DrawnMeasurement {
-  std::string name;              ///< its file, and where it starts if several do
-  std::optional<Replay> replay;  ///< none where it cannot be drawn
-  std::string text;              ///< what the table says of it, where there is no replay
+  std::string name;                ///< its file, and where it starts if several do
+  std::optional<Replay> replay{};  ///< none where it cannot be drawn
+  std::string text{};              ///< what the table says of it, where there is no replay
 };
 
 /// So many are drawn; of others the estimates are.

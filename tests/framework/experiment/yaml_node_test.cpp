@@ -80,6 +80,18 @@ TEST(YamlNode, AsksForQuotesWhereACommaCutsATerm) {
   }
 }
 
+TEST(YamlNode, ListsAmongKeysAndRoundBracketsAreNamed) {
+  EXPECT_NE(getYamlError("a:\n  b: 1\n  - c: 2\n  d: 3\n").find("an item of a list stands among the keys"),
+            std::string::npos)
+      << getYamlError("a:\n  b: 1\n  - c: 2\n  d: 3\n");
+  EXPECT_NE(getYamlError("a:\n  - {c: 2}\n  d: 3\n").find("a key stands among the items"), std::string::npos)
+      << getYamlError("a:\n  - {c: 2}\n  d: 3\n");
+  EXPECT_EQ(getYamlError("a: {bounds: (80, 120), unit: N}\n"),
+            "f.yaml:1:13: '(80, 120)' is not a list: write [80, 120]");
+  EXPECT_NE(getYamlError("a: {at: (x, y)}\n").find("write [x, y]"), std::string::npos);
+  EXPECT_EQ(getYamlError("a:\n- 1\nb: 2\n"), "");  // a list may stand beside its key
+}
+
 TEST(YamlNode, AnEmptyFileHasAPlaceToo) {
   EXPECT_EQ(parseYaml("", "f.yaml").where.file, "f.yaml");
   EXPECT_EQ(getYamlError(std::string("a: 1\nb: \0", 9)).rfind("f.yaml:2:1: has a NUL byte", 0), 0u);
