@@ -285,16 +285,17 @@ std::optional<ExperimentSpec> MeasurementReader::followTimes(const Table& table,
 std::optional<ExperimentSpec> MeasurementReader::followExcitation(const Table& table,
                                                                   std::optional<double> start,
                                                                   double beside) const {
-  if (reduction_ || experiment_.measurement.start.when) {
+  if (reduction_) {
     return std::nullopt;
   }
-  const double shift = getStart(table, start) - experiment_.measurement.start.time;
+  const double zero = getStart(table, start);
+  const MeasurementStartSpec& stated = experiment_.measurement.start;
   ExperimentSpec followed = experiment_;
   try {
-    return followMeasuredSignals(followed, table, shift, beside) ? std::make_optional(std::move(followed))
-                                                                 : std::nullopt;
+    return followMeasuredSignals(followed, table, zero, beside) ? std::make_optional(std::move(followed))
+                                                                : std::nullopt;
   } catch (const MeasurementError&) {
-    if (shift != 0.0) {
+    if (stated.when || zero != stated.time) {
       throw;
     }
     return std::nullopt;  // the experiment's own is complete

@@ -84,8 +84,8 @@ class MeasurementReader {
   /// interpolated.
   std::optional<ExperimentSpec> followTimes(const Table& table, std::optional<double> start) const;
 
-  /// The experiment with its measured excitation as the table has it, as much later as the window
-  /// (followMeasuredSignals); none where that changes nothing or measurement.start is a trigger. beside: s.
+  /// The experiment with its measured excitation as the table or its own file has it, as much later as the
+  /// window (followMeasuredSignals); none where that changes nothing. beside: s.
   std::optional<ExperimentSpec> followExcitation(const Table& table, std::optional<double> start,
                                                  double beside = 0.0) const;
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "framework/data/measurement/files/read_table.hpp"
+#include "framework/data/measurement/measurement_start.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/model_numbers.hpp"
@@ -154,13 +155,41 @@ bool hasColumns(const Table& table, const MeasuredSignalSpec& spec) {
                      [&](const std::string& name) { return findColumn(table, name) != nullptr; });
 }
 
-/// The recording where it has the columns; else, where the start has moved, the signal's own file, which
-/// shares the recording's time. nullopt where neither has anything new.
-std::optional<Table> findFollowed(const Table& recording, const MeasuredSignalSpec& spec, double shift) {
-  if (hasColumns(recording, spec)) {
-    return recording;
+/// The trigger from which the start of a signal in a file of its own is counted.
+double findTriggerBeside(const MeasuredSignalSpec& signal, const MeasurementSpec& measurement,
+                         const Table& recording) {
+  try {
+    return findStart(recording, measurement);
+  } catch (const MeasurementError& error) {
+    throw MeasurementError(signal.file.text + ": the excitation in it cannot follow the start of " +
+                           recording.source + ", as its own is counted from a trigger (" + error.what() +
+                           "); write the column into the recording, or measurement.start as a number");
   }
-  return shift == 0.0 ? std::nullopt : std::make_optional(readTable(spec.file.text, listColumns(spec)));
+}
+
+/// Whether the table was read from the file that the signal names.
+bool isOwnFile(const Table& table, const MeasuredSignalSpec& signal) {
+  std::error_code unknown;  // a table need not be of a file
+  return std::filesystem::equivalent(table.source, signal.file.text, unknown);
+}
+
+/// The time of a signal that is t = 0 where that of the recording is `start`. Columns of one recording share
+/// its time; the signal's own file does as well, but for what the stated starts differ by. A trigger is the
+/// start of the recording, and of another file what that states.
+double calcSignalStart(const MeasuredSignalSpec& signal, const MeasurementSpec& measurement,
+                       const Table& recording, double start) {
+  const bool is_recorded = hasColumns(recording, signal);
+  if (is_recorded && (measurement.start.when || !isOwnFile(recording, signal))) {
+    return start;
+  }
+  const double stated =
+      measurement.start.when ? findTriggerBeside(signal, measurement, recording) : measurement.start.time;
+  return signal.start == stated ? start : signal.start + (start - stated);
+}
+
+/// The recording where it has the columns, else the signal's own file.
+Table readSignal(const Table& recording, const MeasuredSignalSpec& spec) {
+  return hasColumns(recording, spec) ? recording : readTable(spec.file.text, listColumns(spec));
 }
 
 template <class Action>
@@ -191,24 +220,26 @@ void loadMeasuredSignals(ExperimentSpec& experiment) {
   });
 }
 
-void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, double start) {
+void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start) {
   visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
-    fill(target, table, signal.unit, start, experiment.model.simulation.duration,
-         calcDelays(experiment.model, target));
+    const MeasuredSignalSpec& spec = *target.measured;
+    fill(target, readSignal(recording, spec), signal.unit,
+         calcSignalStart(spec, experiment.measurement, recording, start),
+         experiment.model.simulation.duration, calcDelays(experiment.model, target));
   });
 }
 
-bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double shift, double beside) {
+bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start, double beside) {
   bool changed = false;
   visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
     const MeasuredSignalSpec& spec = *target.measured;
-    const std::optional<Table> followed = findFollowed(recording, spec, shift);
-    if (!followed) {
+    const double zero = calcSignalStart(spec, experiment.measurement, recording, start);
+    if (zero == spec.start && !hasColumns(recording, spec)) {
       return;
     }
     TableSpec own = target;
     const Bounds delays = calcDelays(experiment.model, target);
-    fillRecorded(own, *followed, signal.unit, spec.start + shift, experiment.model.simulation.duration,
+    fillRecorded(own, readSignal(recording, spec), signal.unit, zero, experiment.model.simulation.duration,
                  {delays.lower - beside, delays.upper + beside, {}});
     changed = changed || own.times != target.times || own.values != target.values;
     target = std::move(own);

@@ -11,15 +11,15 @@ namespace twinmap {
 /// names are written. Throws MeasurementError, naming the YAML key, the file and what is wrong with it.
 void loadMeasuredSignals(ExperimentSpec& experiment);
 
-/// Replaces the values of the same tables by those of another measurement, whose time `start` (s) is t = 0:
-/// the same columns at the same rate or with the same times column.
-void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& table, double start);
+/// Replaces the values of the same tables by those of another recording, whose time `start` (s) is t = 0: by
+/// its columns where it has them, else by those of their own files, which share its time. A trigger
+/// (measurement.start.when) is the start of both.
+void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start);
 
-/// The same tables by the columns of a recording, where it has them, `shift` (s) after their own starts;
-/// where it has not and `shift` is not 0, by their own files, whose time is the recording's. `beside` (s)
-/// more at both ends, where the recording ends by its first and last value. Whether any value changed. Throws
+/// The same, but where a recording ends within `beside` (s) of the simulation, its first and last value are
+/// held; a file of its own is read only where the start has moved. Whether any value changed. Throws
 /// MeasurementError, naming the file, where it cannot be read, has a gap, or does not cover the simulation.
-bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double shift, double beside);
+bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start, double beside);
 
 /// The measured tables of a signal go on for `beside` (s) before and after the simulation, by their first and
 /// last values where they end.

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "framework/data/measurement/lagrange.hpp"
+#include "framework/data/measurement/measured_signals.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/row_order.hpp"
 #include "framework/data/measurement/time_series.hpp"
@@ -129,10 +131,32 @@ void requireSame(const Pair& pair, const SignalSpec& signal, const std::string& 
       pair.measured[worst], signal.unit, pair.trained[worst], signal.unit));
 }
 
+/// The signal of a file of its own, where the start of a recording without its column has moved and the file
+/// is there.
+void compareOwnFile(const ExperimentSpec& experiment, const SignalSpec& signal, const TableSpec& trained,
+                    const Table& recording, double start) {
+  if (!std::filesystem::exists(trained.measured->file.text)) {
+    return;
+  }
+  ExperimentSpec moved = experiment;
+  moved.model.excitation = {signal};
+  moved.model.excitation.front().tables = {trained};
+  if (!followMeasuredSignals(moved, recording, start, 0.0)) {
+    return;
+  }
+  const double duration = experiment.model.simulation.duration;
+  const SampledSignal now = takeTrained(moved.model.excitation.front().tables.front(), duration);
+  const Pair pair = bringTogether(takeTrained(trained, duration), now);
+  if (pair.times.size() > 0) {
+    requireSame(pair, signal, trained.measured->file.text, trained.measured->column.text, start);
+  }
+}
+
 void compare(const ExperimentSpec& experiment, const SignalSpec& signal, const TableSpec& trained,
              const Table& table, double start) {
   const std::optional<ColumnSpec> column = findSignalColumn(table, signal, *trained.measured);
   if (!column) {
+    compareOwnFile(experiment, signal, trained, table, start);
     return;
   }
   const SampledSignal measured = readMeasured(table, *column, experiment.measurement, signal.unit, start);

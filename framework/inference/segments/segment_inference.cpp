@@ -168,7 +168,8 @@ SegmentInference::SegmentInference(ExperimentSpec experiment, double length, Vec
       length_(length),
       known_(std::move(known)),
       options_(makePosteriorOptions(experiment_, draws)) {
-  makeSegmentGrid(experiment_, length_, length_);  // refuses what cannot be
+  const double end = experiment_.model.simulation.duration + length_;
+  makeSegmentGrid(experiment_, length_, end);  // refuses what cannot be, whatever the recording
 }
 
 std::vector<std::string> SegmentInference::listColumns() const {

@@ -55,10 +55,10 @@ class Recorders(FolderTestCase):
         rows = [",".join(f"{cell:.17g}" for cell in row) for row in zip(*columns.values())]
         (cls.folder / name).write_text(",".join(columns) + "\n" + "\n".join(rows) + "\n")
 
-    def infer(self, experiment, measurement, *overrides):
+    def infer(self, experiment, measurement, *options):
         path = self.folder / "experiment.yaml"
         path.write_text(experiment)
-        result = call("infer", path, self.folder / measurement, "--json")
+        result = call("infer", path, self.folder / measurement, "--json", *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         return json.loads(result.stdout)
 
@@ -87,6 +87,37 @@ class Recorders(FolderTestCase):
         self.assertAlmostEqual(found["start"], 3.0)
         self.assert_right(found, ["k", "d"])
         self.assertEqual(found.get("left_out", []), [])
+
+    def window(self, start="0"):
+        """Three seconds from an unknown state, the force in a file of its own whose clock is late by 0.02 s."""
+        known = EXPERIMENT.replace("  late: {bounds: [-0.05, 0.05], unit: s}\n", "").replace("DELAY", "0.02")
+        initial = (
+            "nuisance: {x0: {bounds: [-0.1, 0.1], unit: m}, v0: {bounds: [-1, 1], unit: m/s}}\n"
+            "initial: {coordinates: {x: x0}, speeds: {x: v0}}\n"
+        )
+        short = known.replace("duration: 8", "duration: 3").replace("count: 390", "count: 145")
+        return short + initial + f"measurement: {{start: {start}}}\n"
+
+    def test_an_excitation_in_its_own_file_follows_the_start(self):
+        from_trigger = self.window("{when: x > 0.005}")
+        for experiment, start in ((self.window(), 4), (self.window(), 1.6), (self.window("{when: first}"), 4)):
+            self.assert_right(self.infer(experiment, "m.csv", "--start", start), ["k", "d"])
+        self.write("both.csv", {"t": self.t, "x": self.x, "v": self.v, "F": calc_force(self.t - TRUE["late"])})
+        self.assert_right(self.infer(from_trigger, "both.csv"), ["k", "d"])
+
+    def test_an_excitation_in_its_own_file_follows_segments_and_predictions(self):
+        self.assert_right(self.infer(self.window(), "m.csv", "--start", 2, "--segments", 1), ["k", "d"])
+        path, recording = self.folder / "experiment.yaml", self.folder / "m.csv"
+        result = call("validate", path, recording, "--start", 4, "--against", recording, "--against-start", 1, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertLess(json.loads(result.stdout)["predictions"][0]["rms"], 1.2)
+
+    def test_an_excitation_that_cannot_follow_a_trigger_is_named(self):
+        path = self.folder / "experiment.yaml"
+        path.write_text(self.window("{when: x > 5}"))
+        result = call("infer", path, self.folder / "m.csv", "--start", 4)
+        self.assertNotEqual(result.returncode, 0)
+        self.assertIn("force.csv: the excitation in it cannot follow the start", result.stderr)
 
 
 class Modes(FolderTestCase):

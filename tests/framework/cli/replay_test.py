@@ -313,10 +313,15 @@ class MeasuredExcitation(ReplayCase):
         self.assertEqual(result.returncode, 2, result)
         self.assertIn("--set load=VALUE", result.stderr)
 
-    def test_the_input_must_be_in_the_file(self):
+    def test_the_input_is_in_the_file_or_in_its_own(self):
         columns = read_numbers(self.usual)
         path = self.folder / "no_input.csv"
         write_csv(path, ["t", "x"], [columns["t"], columns["x"]])
+        fit = self.read_fit(self.replay("own", path, "--set", "load=0.4", "--refine"))["x"]
+        self.assertAlmostEqual(fit["rms_residual_sd"], 1, delta=0.25)
+        own, aside = self.folder / "input.csv", self.folder / "aside.csv"
+        own.rename(aside)
+        self.addCleanup(aside.rename, own)
         result = call("replay", self.run_folder, path, "--set", "load=0.4", "--out", self.folder / "none")
         self.assertEqual(result.returncode, 1, result)
-        self.assertIn("has no column 'F'", result.stderr)
+        self.assertIn("input.csv: does not exist", result.stderr)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/data/measurement/files/read_table.hpp"
+#include "framework/data/measurement/measurement_start.hpp"
 #include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
@@ -69,6 +70,35 @@ TEST_F(MeasuredSignals, OfAFileOfTheirOwnFollowTheStart) {
   }
 }
 
+TEST_F(MeasuredSignals, OfAFileOfTheirOwnAreReplacedByItsPartOfAnotherStart) {
+  experiment_.measurement.start.time = 0.5;  // of the recording, whose clock is 1.5 s behind that of the file
+  replaceMeasuredSignals(experiment_, Table{"y.csv", {}, {}}, 3.0);
+  for (std::size_t i = 0; i < updTable().times.size(); ++i) {
+    EXPECT_NEAR(updTable().values[i], 1e4 * (updTable().times[i] + 4.5), 1e-9);
+  }
+}
+
+TEST_F(MeasuredSignals, OfAnotherRecordingShareItsTime) {
+  loadMeasuredSignals(experiment_);
+  Table other = readTable(folder_ / "a.csv", listSignalColumns(experiment_));
+  other.source = "b.csv";
+  experiment_.measurement.start.time = 0.25;
+  ASSERT_TRUE(followMeasuredSignals(experiment_, other, 4.0, 0.0));
+  EXPECT_NEAR(updTable().values[4], 1e4 * (updTable().times[4] + 4.0), 1e-9);
+}
+
+TEST_F(MeasuredSignals, OfARecordingBeginWithItsTrigger) {
+  loadMeasuredSignals(experiment_);
+  experiment_.measurement.start.when = Name{"F > 35.5", {}};
+  experiment_.measurement.time = ColumnSpec{"t", {}, {}};
+  const Table table = readTable(folder_ / "a.csv");
+  const double start = findStart(table, experiment_.measurement);
+  ASSERT_TRUE(followMeasuredSignals(experiment_, table, start, 0.0));
+  for (std::size_t i = 0; i < updTable().times.size(); ++i) {
+    EXPECT_NEAR(updTable().values[i], 1e4 * (updTable().times[i] + 3.6), 1e-9);
+  }
+}
+
 TEST_F(MeasuredSignals, OfAFileThatDoesNotCoverTheStartAreRefusedByName) {
   loadMeasuredSignals(experiment_);
   try {
@@ -90,6 +120,7 @@ TEST_F(MeasuredSignals, AreReadOnce) {
 TEST_F(MeasuredSignals, AreReplacedByAnotherWindow) {
   loadMeasuredSignals(experiment_);
   ASSERT_TRUE(hasMeasuredSignals(experiment_));
+  experiment_.measurement.start.time = 2.0;
   replaceMeasuredSignals(experiment_, readTable(folder_ / "a.csv", listSignalColumns(experiment_)), 5.0);
   EXPECT_NEAR(updTable().values[4], 1e4 * (updTable().times[4] + 5.0), 1e-9);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "tests/framework/test_folder.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -119,6 +121,23 @@ TEST(TrainedExcitation, OnlyWhatBothCoverIsCompared) {
   EXPECT_EQ(getExcitationError(
                 {"m.csv", {{"t", {}, Eigen::VectorXd::Ones(1)}, {"F", {}, Eigen::VectorXd::Ones(1)}}, {}}),
             "");
+}
+
+TEST(TrainedExcitation, InAFileOfItsOwnIsComparedWhereTheStartHasMoved) {
+  const TestFolder folder;
+  ExperimentSpec experiment = makeExperiment();
+  const std::string bench = (folder / "bench.csv").string();
+  experiment.model.excitation[0].tables[0].measured->file.text = bench;
+  const auto rows = static_cast<Eigen::Index>(2000);
+  writeTable(bench, {{"force", {}, Eigen::VectorXd::NullaryExpr(rows, [](Eigen::Index i) {
+                        return calcForce(0.01 * static_cast<double>(i) - 7.0);
+                      })}});
+  const Table response{"y.csv", {}, {}};
+  EXPECT_EQ(getExcitationError(response, 0.0, experiment), "");
+  EXPECT_EQ(getExcitationError(response, 10.0, experiment), "");  // whole periods later
+  EXPECT_EQ(
+      getExcitationError(response, 0.05, experiment).find(bench + ": column 'force' is not the excitation"),
+      0U);
 }
 
 }  // namespace
