@@ -7,6 +7,9 @@
 
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/measurement_start.hpp"
+#include "framework/data/measurement/recording/bridged_gaps.hpp"
+#include "framework/data/measurement/recording/recording.hpp"
+#include "framework/data/measurement/recording/row_order.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/model_numbers.hpp"
@@ -55,10 +58,9 @@ Bounds calcDelays(const ModelSpec& model, const TableSpec& table) {
   return delays;
 }
 
-/// That the times cover the excerpt, from `begin` to `end`, without a gap.
+/// That the times cover the excerpt, from `begin` to `end`.
 void requireExcerpt(const std::string& source, const VectorXd& times, double start, double begin,
                     double end) {
-  constexpr double kLongest = 1.5;
   if (times.size() < 2) {
     throw MeasurementError(source + ": has " + std::to_string(times.size()) +
                            " samples; must have at least 2");
@@ -71,13 +73,6 @@ void requireExcerpt(const std::string& source, const VectorXd& times, double sta
                            describeTime(start + last) + ", but " + describeTime(start + begin) + " to " +
                            describeTime(start + end) + " is needed" +
                            (elsewhere ? "; give the time in the file that is the model's 0 (start)" : ""));
-  }
-  for (Index i = 0; i + 1 < times.size(); ++i) {
-    const bool needed = times[i + 1] > begin && times[i] < end;  // not in the samples beside
-    if (needed && times[i + 1] - times[i] > kLongest * step) {
-      throw MeasurementError(source + ": has a gap of " + describeTime(times[i + 1] - times[i]) +
-                             " after t = " + describeTime(start + times[i]) + " in a signal that is needed");
-    }
   }
 }
 
@@ -95,6 +90,9 @@ void holdEnds(TableSpec& table, double begin, double end) {
   }
   table.times.insert(table.times.begin(), times.begin(), times.end());
   table.values.insert(table.values.begin(), before, table.values.front());
+  for (TableUnknown& unknown : table.unknown) {
+    unknown.first += before;
+  }
   for (std::size_t i = 0; i < behind; ++i) {
     table.times.push_back(table.times.back() + step);
     table.values.push_back(table.values.back());
@@ -104,27 +102,42 @@ void holdEnds(TableSpec& table, double begin, double end) {
 constexpr Index kMaxSamples = 400'000;  // resolved experiments hold them, and at most a million values
 constexpr Index kMargin = 4;            // samples beside, for interpolation that looks at neighbours
 
+/// A measured column, in the signal's unit, at the rows that have a time and a value.
+Samples readColumn(const Table& table, const MeasuredSignalSpec& spec, const std::string& unit,
+                   double start) {
+  const ColumnSpec column = parseColumn(spec.column.text, spec.column.where);
+  const Column& found = getColumn(table, column.name);
+  const TimeBase base = makeTimeBase(spec, start);
+  const VectorXd times = readUnorderedTimes(table, base, found.values.size());
+  requireClock(table, base, times);
+  requireLength(table, found, times.size());
+  const std::vector<Index> rows = sortRows(times).rows;
+  const VectorXd values = readValues(table, column, unit, 0, times.size());
+  return takeSamples(times(rows), values(rows));
+}
+
+void assign(TableSpec& target, const Samples& samples, const RowRange& range) {
+  const double* times = samples.times.data() + range.first;
+  const double* values = samples.values.data() + range.first;
+  target.times.assign(times, times + range.count);
+  target.values.assign(values, values + range.count);
+}
+
 /// delays: of the table's clock, so that it is needed from the earliest time to the latest.
 void fill(TableSpec& target, const Table& table, const std::string& unit, double start, double duration,
           const Bounds& delays) {
-  const ColumnSpec column = parseColumn(target.measured->column.text, target.measured->column.where);
-  const Column& found = getColumn(table, column.name);
-  const VectorXd times = readTimes(table, makeTimeBase(*target.measured, start), found.values.size());
-  requireLength(table, found, times.size());
+  const Samples samples = readColumn(table, *target.measured, unit, start);
   const bool excerpt = target.measured->duration && *target.measured->duration < duration;
   const double begin = excerpt ? 0.0 : delays.lower;
   const double end = excerpt ? *target.measured->duration : duration + delays.upper;
-  const RowRange range = findRows(times, begin, end, kMargin);
-  const VectorXd kept = times.segment(range.first, range.count);
-  requireExcerpt(table.source, kept, start, begin, end);
-  const VectorXd values = readValues(table, column, unit, range.first, range.count);
-  if (values.size() > kMaxSamples) {
+  const RowRange range = findRows(samples.times, begin, end, kMargin);
+  requireExcerpt(table.source, samples.times.segment(range.first, range.count), start, begin, end);
+  if (range.count > kMaxSamples) {
     throw MeasurementError(table.source + ": has more than 400000 samples in the time that is simulated; " +
                            "resample the signal");
   }
-  const auto used = excerpt ? findRows(kept, 0.0, end, 0) : RowRange{0, kept.size()};
-  target.times.assign(kept.data() + used.first, kept.data() + used.first + used.count);
-  target.values.assign(values.data() + used.first, values.data() + used.first + used.count);
+  assign(target, samples, excerpt ? findRows(samples.times, 0.0, end, 0) : range);
+  bridgeGaps(target, table.source, start, begin, end);
 }
 
 /// Of another recording, whose time `start` is t = 0. It is needed over the simulation alone; where it ends
@@ -135,17 +148,12 @@ void fillRecorded(TableSpec& target, const Table& table, const std::string& unit
     fill(target, table, unit, start, duration, reach);
     return;
   }
-  const ColumnSpec column = parseColumn(target.measured->column.text, target.measured->column.where);
-  const Column& found = getColumn(table, column.name);
-  const VectorXd times = readTimes(table, makeTimeBase(*target.measured, start), found.values.size());
-  requireLength(table, found, times.size());
+  const Samples samples = readColumn(table, *target.measured, unit, start);
   const double begin = std::min(0.0, reach.lower), end = duration + std::max(0.0, reach.upper);
-  const RowRange range = findRows(times, begin, end, kMargin);
-  const VectorXd kept = times.segment(range.first, range.count);
-  requireExcerpt(table.source, kept, start, 0.0, duration);
-  const VectorXd values = readValues(table, column, unit, range.first, range.count);
-  target.times.assign(kept.data(), kept.data() + kept.size());
-  target.values.assign(values.data(), values.data() + values.size());
+  const RowRange range = findRows(samples.times, begin, end, kMargin);
+  requireExcerpt(table.source, samples.times.segment(range.first, range.count), start, 0.0, duration);
+  assign(target, samples, range);
+  bridgeGaps(target, table.source, start, begin, end);
   holdEnds(target, begin, end);
 }
 
@@ -189,7 +197,8 @@ double calcSignalStart(const MeasuredSignalSpec& signal, const MeasurementSpec& 
 
 /// The recording where it has the columns, else the signal's own file.
 Table readSignal(const Table& recording, const MeasuredSignalSpec& spec) {
-  return hasColumns(recording, spec) ? recording : readTable(spec.file.text, listColumns(spec));
+  return hasColumns(recording, spec) ? recording
+                                     : readTable(spec.file.text, listColumns(spec), MissingCells::kKeep);
 }
 
 template <class Action>
@@ -212,7 +221,7 @@ void loadMeasuredSignals(ExperimentSpec& experiment) {
     }
     const MeasuredSignalSpec& spec = *target.measured;
     try {
-      fill(target, readTable(spec.file.text, listColumns(spec)), signal.unit, spec.start,
+      fill(target, readTable(spec.file.text, listColumns(spec), MissingCells::kKeep), signal.unit, spec.start,
            experiment.model.simulation.duration, calcDelays(experiment.model, target));
     } catch (const MeasurementError& error) {
       throw MeasurementError(toString(spec.file.where) + ": " + error.what());
@@ -262,6 +271,8 @@ void copyMeasuredSignals(const std::vector<SignalSpec>& from, ModelSpec& model) 
         if (signal.tables[i].measured) {
           own.tables[i].times = signal.tables[i].times;
           own.tables[i].values = signal.tables[i].values;
+          own.tables[i].unknown = signal.tables[i].unknown;
+          own.tables[i].bridged = signal.tables[i].bridged;
         }
       }
     }

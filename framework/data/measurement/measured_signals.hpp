@@ -18,7 +18,8 @@ void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& recording, 
 
 /// The same, but where a recording ends within `beside` (s) of the simulation, its first and last value are
 /// held; a file of its own is read only where the start has moved. Whether any value changed. Throws
-/// MeasurementError, naming the file, where it cannot be read, has a gap, or does not cover the simulation.
+/// MeasurementError, naming the file, where it cannot be read, has a gap that cannot be bridged (bridgeGaps),
+/// or does not cover the simulation.
 bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start, double beside);
 
 /// The measured tables of a signal go on for `beside` (s) before and after the simulation, by their first and

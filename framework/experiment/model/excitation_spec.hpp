@@ -104,6 +104,8 @@ struct MeasuredSignalSpec {
   double start = 0.0;                 ///< s; the time in the file that becomes t = 0 of the simulation
   std::optional<double> duration;     ///< s, of the excerpt; default: to the end of the file
   Expression delay{};                 ///< s, of the recorder's clock: file time = start + t + delay
+  std::optional<double> max_gap{};    ///< s; gaps up to this are bridged, whatever is known of what they hide
+  double noise = 0.0;  ///< standard deviation of each sample's white noise, in the signal's unit
 };
 
 template <class Fields>
@@ -117,13 +119,27 @@ void describe(Fields& f, MeasuredSignalSpec& s) {
   f.optional("delay", s.delay,
              "by which the file's clock is late: its time is start + t + delay; perhaps a nuisance",
              Unit{"s"});
+  f.optional("max_gap", s.max_gap,
+             "gaps up to this are interpolated; default: those of which the signal tells what they hide; s",
+             kPositive);
+  f.optional("noise", s.noise,
+             "standard deviation of the white noise of its samples, in the signal's unit; infer counts it",
+             kNonNegative);
 }
+
+/// Something of a table that is not known: what one standard deviation of it changes.
+struct TableUnknown {
+  std::size_t first = 0;  ///< value
+  std::vector<double> changes;
+};
 
 /// A table; 0 before the first and after the last time (hold: the last value ends there).
 struct TableSpec {
   std::vector<double> times, values;  ///< empty until what was measured is read
   TableInterpolation interpolation = TableInterpolation::kLinear;
   std::optional<MeasuredSignalSpec> measured{};  ///< where times and values come from
+  std::vector<TableUnknown> unknown{};           ///< independent of each other; of values that were lost
+  std::string bridged{};                         ///< what was lost of the measured, a phrase; "": nothing
 
   /// Of the recorder's clock, s; nullptr where there is none.
   const Expression* findDelay() const {
