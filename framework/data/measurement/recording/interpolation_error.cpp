@@ -34,6 +34,13 @@ VectorXd calcDifference(const VectorXd& times, Index first, double t) {
   return difference;
 }
 
+/// Whether samples about a needed time are lost, so that nothing is interpolated there.
+bool hasGap(const VectorXd& times, Index first, double step) {
+  constexpr double kLongest = 1.5;
+  const VectorXd steps = times.segment(first + 1, kMany - 1) - times.segment(first, kMany - 1);
+  return steps.maxCoeff() > kLongest * step;
+}
+
 }  // namespace
 
 double calcInterpolationError(const VectorXd& times, const VectorXd& values,
@@ -41,8 +48,9 @@ double calcInterpolationError(const VectorXd& times, const VectorXd& values,
   if (times.size() < kMany || needed.empty()) {
     return 0.0;
   }
-  const double tolerance = kSameTime * calcMedianStep(times);
+  const double step = calcMedianStep(times), tolerance = kSameTime * step;
   double squares = 0.0;
+  Index left_out = 0;
   for (const double t : needed) {
     const Index next = std::lower_bound(times.begin(), times.end(), t - tolerance) - times.begin();
     const Index first = next - kMany / 2;
@@ -50,11 +58,16 @@ double calcInterpolationError(const VectorXd& times, const VectorXd& values,
         first + kMany > times.size()) {
       continue;
     }
+    if (hasGap(times, first, step)) {
+      ++left_out;
+      continue;
+    }
     const VectorXd difference = calcDifference(times, first, t);
     const double error = difference.dot(values.segment(first, kMany));
     squares += error * error - stddev * stddev * difference.squaredNorm();
   }
-  return std::sqrt(std::max(0.0, squares / static_cast<double>(needed.size())));
+  const Index counted = static_cast<Index>(needed.size()) - left_out;
+  return counted == 0 ? 0.0 : std::sqrt(std::max(0.0, squares / static_cast<double>(counted)));
 }
 
 }  // namespace twinmap

@@ -48,6 +48,19 @@ TEST(InterpolationError, IsNotThatOfNoise) {
   EXPECT_LT(calcInterpolationError(kRegular, noise, listMiddles(), 1.0), 0.1);
 }
 
+TEST(InterpolationError, IsNotThatOfLostSamples) {
+  const VectorXd values = sample(60.0);
+  std::vector<Index> kept;
+  for (Index i = 0; i < kRegularCount; ++i) {
+    if (i < 100 || i > 130) {
+      kept.push_back(i);
+    }
+  }
+  const double whole = calcInterpolationError(kRegular, values, listMiddles(), 0.0);
+  const double found = calcInterpolationError(kRegular(kept), values(kept), listMiddles(), 0.0);
+  EXPECT_NEAR(found / whole, 1.0, 0.1);
+}
+
 TEST(InterpolationError, IsNoneAtSamples) {
   EXPECT_EQ(calcInterpolationError(kRegular, sample(5.0), {1.0, 2.0, 3.0}, 0.0), 0.0);
 }
