@@ -213,7 +213,8 @@ AvailableFeatures MeasurementReader::readSamples(const Table& table, std::option
   requireExcitation(table, start);
   warnOfJumps(table);
   AvailableResponse response =
-      readAvailable(table, experiment_.measurement, getRecorded(), getStart(table, start), sample_interval_);
+      readAvailable(table, experiment_.measurement, getRecorded(), getStart(table, start), sample_interval_,
+                    reduction_ ? std::vector<FeatureSpec>() : experiment_.features);
   if (reduction_) {
     return reduce(std::move(response), table.source);
   }
@@ -260,13 +261,13 @@ void MeasurementReader::warnOfInterpolation(const Table& table, std::optional<do
     const auto& noise = experiment.noise.stddev;
     const auto stated = std::find_if(noise.begin(), noise.end(),
                                      [&](const OutputNoiseSpec& spec) { return spec.name.text == name; });
-    if (stated == noise.end() || stated->stddev.unknown) {
+    const std::vector<double> needed = collectTimesOf(name, experiment.features);
+    if (stated == noise.end() || stated->stddev.unknown || needed.empty()) {
       continue;
     }
     const double stddev = experiment.noise.scale * stated->stddev;
     const Samples samples = twinmap::readSamples(recording.getRows(name), experiment.measurement, layout, o);
-    const double error = calcInterpolationError(samples.times, samples.values,
-                                                collectTimesOf(name, experiment.features), stddev);
+    const double error = calcInterpolationError(samples.times, samples.values, needed, stddev);
     if (stddev > 0.0 && error > kMatters * stddev) {
       logWarning(
           fmt::format("{}: features of {} lie between its samples, where the cubic errs by {} of its noise; "

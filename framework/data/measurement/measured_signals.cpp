@@ -9,7 +9,7 @@
 #include "framework/data/measurement/measurement_start.hpp"
 #include "framework/data/measurement/recording/bridged_gaps.hpp"
 #include "framework/data/measurement/recording/recording.hpp"
-#include "framework/data/measurement/recording/row_order.hpp"
+#include "framework/data/measurement/row_order.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/model_numbers.hpp"

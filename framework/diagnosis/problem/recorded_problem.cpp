@@ -215,6 +215,14 @@ RecordedFeatures readRecording(const MeasurementReader& reader, const Table& tab
   return recording;
 }
 
+TimedRecording readTimedRecording(const MeasurementReader& reader, const Table& table,
+                                  std::optional<double> start, const VectorXd& known) {
+  std::optional<ExperimentSpec> timed = reader.followTimes(table, start);
+  RecordedFeatures recording = timed ? readRecording(MeasurementReader(*timed), table, start, known)
+                                     : readRecording(reader, table, start, known);
+  return {std::move(timed), std::move(recording)};
+}
+
 RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
                                 const std::vector<double>& starts, const std::vector<KnownValue>& known) {
   RecordedFeatures recordings{

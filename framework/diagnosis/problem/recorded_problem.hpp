@@ -54,6 +54,19 @@ void append(const RecordedFeatures& more, RecordedFeatures& recordings);
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const Eigen::VectorXd& known);
 
+/// A recording at its own times.
+struct TimedRecording {
+  std::optional<ExperimentSpec> timed;  ///< whose features are at these times; none: the reader's is
+  RecordedFeatures recording;
+
+  const ExperimentSpec& getExperiment(const ExperimentSpec& stated) const { return timed ? *timed : stated; }
+};
+
+/// The same with features at the recorded times where they would be interpolated
+/// (MeasurementReader::followTimes), as inference takes them.
+TimedRecording readTimedRecording(const MeasurementReader& reader, const Table& table,
+                                  std::optional<double> start, const Eigen::VectorXd& known);
+
 /// All windows of some files, which start at `starts` in each; without them where the experiment says.
 /// known: values of the inputs. Throws MeasurementError, ExperimentError.
 RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,

@@ -5,6 +5,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
+#include "framework/data/measurement/files/table.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
@@ -51,15 +52,24 @@ RecordedFeatures readOfTrials(const DiagnoseArguments& arguments, const Experime
                     parseKnownValues(arguments.known));
 }
 
-RecordedFeatures readArguments(const DiagnoseArguments& arguments, const MeasurementReader& reader) {
+/// One recording at its own times; several at those of the experiment, which they have in common.
+TimedRecording readArguments(const DiagnoseArguments& arguments, const MeasurementReader& reader) {
   const ExperimentSpec& experiment = reader.getExperiment();
   if (!experiment.trials.empty() && !arguments.files.empty()) {
     throw ExperimentError(arguments.files.front() +
                           ": which trial does it record? Give --trial NAME=" + arguments.files.front());
   }
-  return arguments.trials.empty()
-             ? readRecordings(reader, arguments.files, arguments.starts, parseKnownValues(arguments.known))
-             : readOfTrials(arguments, experiment);
+  if (!arguments.trials.empty()) {
+    return {std::nullopt, readOfTrials(arguments, experiment)};
+  }
+  const std::vector<KnownValue> known = parseKnownValues(arguments.known);
+  if (arguments.files.size() > 1 || arguments.starts.size() > 1) {
+    return {std::nullopt, readRecordings(reader, arguments.files, arguments.starts, known)};
+  }
+  const Table table = readTable(arguments.files.front(), reader.listColumns(), MissingCells::kKeep);
+  return readTimedRecording(
+      reader, table, arguments.starts.empty() ? std::nullopt : std::make_optional(arguments.starts.front()),
+      collectKnown(experiment.model.inputs, known));
 }
 
 }  // namespace
@@ -76,11 +86,13 @@ void diagnose(const DiagnoseArguments& arguments) {
     printBlindSpots(arguments, reader.getExperiment(), waiting);
     return;
   }
-  const RecordedFeatures recordings = readArguments(arguments, reader);
+  const TimedRecording timed = readArguments(arguments, reader);
+  const RecordedFeatures& recordings = timed.recording;
+  const ExperimentSpec& experiment = timed.getExperiment(reader.getExperiment());
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
   options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
-  const Diagnosis diagnosis = twinmap::diagnose(reader.getExperiment(), recordings, options);
+  const Diagnosis diagnosis = twinmap::diagnose(experiment, recordings, options);
   waiting.clear();
   if (!diagnosis.before.isExplained()) {
     for (const std::string& against : listModelRemarks(reader.getExperiment().model)) {
@@ -91,10 +103,12 @@ void diagnose(const DiagnoseArguments& arguments) {
                 : arguments.csv ? makeDiagnosisCsv(diagnosis, name)
                                 : makeDiagnosisTable(diagnosis, name));
   if (!arguments.out.empty()) {
-    writeTextFile(arguments.out, writeCorrected(diagnosis.corrected));
+    ExperimentSpec corrected = diagnosis.corrected;
+    corrected.features = reader.getExperiment().features;  // at times of any recording
+    writeTextFile(arguments.out, writeCorrected(corrected));
   }
   if (!arguments.page.empty()) {
-    writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, reader.getExperiment(), recordings,
+    writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, experiment, recordings,
                                                     nameRecordings(arguments.files, arguments.starts)));
   }
 }

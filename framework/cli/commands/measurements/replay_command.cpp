@@ -73,8 +73,9 @@ void nameMissing(const InferenceSource& source, Replay& replay) {
     const MeasurementReader& reader = source.getReader();
     const MeasuredWindow& from = replay.options.from;
     const Table table = readTable(from.file.string(), reader.listColumns(), MissingCells::kKeep);
-    inferred.missing = findMissingTerm(
-        source.getExperiment(), readRecording(reader, table, from.start, replay.options.known), inferred);
+    const TimedRecording timed = readTimedRecording(reader, table, from.start, replay.options.known);
+    inferred.missing =
+        findMissingTerm(timed.getExperiment(source.getExperiment()), timed.recording, inferred);
   }
 }
 

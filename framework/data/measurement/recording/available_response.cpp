@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/lagrange.hpp"
 #include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/recording/recorded_times.hpp"
 #include "framework/data/measurement/recording/recording.hpp"
 #include "framework/data/measurement/time_series.hpp"
 
@@ -131,6 +134,15 @@ std::string describeUseless(const VectorXd& times, const VectorXd& needed) {
     return fmt::format("has a single time, {}, in all rows; name the column of times (measurement.time)",
                        first);
   }
+  if (times.minCoeff() <= needed[needed.size() - 1] && times.maxCoeff() >= needed[0]) {
+    return fmt::format(
+        "has no sample at any needed time, {} to {}, but {} between them, {} apart (median), too far or too "
+        "unevenly to be interpolated; give features an interval of at least that, or infer this recording "
+        "alone, by samples at its own times",
+        describeTime(needed[0]), describeTime(needed[needed.size() - 1]),
+        (times.array() >= needed[0] && times.array() <= needed[needed.size() - 1]).count(),
+        describeTime(calcMedianStep(times)));
+  }
   return fmt::format(
       "has no sample at any needed time, {} to {}, but some from {} to {}; give the time in the file that is "
       "the model's 0 (--start), or the unit of its times, as 't [ms]'",
@@ -157,29 +169,53 @@ double calcSmallestStep(const VectorXd& times) {
                           : (times.tail(times.size() - 1) - times.head(times.size() - 1)).minCoeff();
 }
 
-/// Finds the samples of an output: in its rows of the response.
+/// The times of a layout, by number, at which features need an output.
+std::vector<Index> listNeeded(const VectorXd& times, const std::string& output,
+                              const std::vector<FeatureSpec>& features) {
+  std::vector<Index> all(static_cast<std::size_t>(times.size())), needed;
+  std::iota(all.begin(), all.end(), Index{0});
+  if (!features.empty()) {
+    const std::vector<Name> outputs = collectOutputs(features);
+    if (std::none_of(outputs.begin(), outputs.end(), [&](const Name& name) { return name.text == output; })) {
+      return {};
+    }
+  }
+  if (features.empty() || !areSamples(features)) {
+    return all;
+  }
+  const std::vector<double> asked = collectTimesOf(output, features);
+  const double same = times.size() > 1 ? kSameTime * calcMedianStep(times) : 0.0;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(needed), [&](Index i) {
+    const auto next = std::lower_bound(asked.begin(), asked.end(), times[i] - same);
+    return next != asked.end() && *next <= times[i] + same;
+  });
+  return needed;
+}
+
+/// Finds the samples of an output: in its rows of the response, missing only at these of the layout's times.
 void addOutput(const Table& table, const std::string& column, const SampleFinder& finder,
                const std::optional<Bounds>& range, const ResponseLayout& layout, Index output,
-               AvailableResponse& available) {
-  const VectorXd& needed = layout.times;
-  VectorXd found(needed.size()), known(needed.size());
-  Index clipped = 0;
-  for (Index i = 0; i < needed.size(); ++i) {
-    const FoundSample sample = finder.find(needed[i]);
+               const std::vector<Index>& at, AvailableResponse& available) {
+  const VectorXd needed = layout.times(at);
+  VectorXd found(layout.times.size()), known(found.size());
+  std::vector<ClippedSample> beyond;
+  for (Index i = 0; i < found.size(); ++i) {
+    const FoundSample sample = finder.find(layout.times[i]);
     const Index row = layout.getRow(output, i);
     available.response[row] = found[i] = sample.value;
     known[i] = sample.side == 0.0 ? sample.value : 0.0;
-    if (sample.side != 0.0) {
-      ++clipped;
-      available.clipped.push_back({row, sample.side > 0.0 ? range->upper : range->lower, sample.side});
+    if (sample.side != 0.0 && std::binary_search(at.begin(), at.end(), i)) {
+      beyond.push_back({row, sample.side > 0.0 ? range->upper : range->lower, sample.side});
     }
   }
-  requireUsable(table, column, finder.getTimes(), needed, found);
-  if (clipped > 0) {
+  requireUsable(table, column, finder.getTimes(), needed, found(at));
+  available.clipped.insert(available.clipped.end(), beyond.begin(), beyond.end());
+  known = VectorXd(known(at));
+  if (!beyond.empty()) {
     available.remarks.push_back(fmt::format(
         "{} of {} samples of {} are at a limit of its range: what they say is that the response is "
         "there or beyond",
-        clipped, needed.size(), column));
+        beyond.size(), needed.size(), column));
   }
   if (known.hasNaN()) {
     available.remarks.push_back(describeMissing(column, needed, known) + finder.describeSparse());
@@ -228,7 +264,8 @@ AvailableResponse readModesBeside(const Table& table, const MeasurementSpec& spe
 }
 
 AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
-                                double start, std::optional<double> interval) {
+                                double start, std::optional<double> interval,
+                                const std::vector<FeatureSpec>& features) {
   AvailableResponse available{VectorXd::Constant(layout.getRowCount(), kMissing), {}, 0, {}};
   if (layout.modes > 0) {
     addModes(table, spec, layout, available);
@@ -241,12 +278,16 @@ AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec,
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     const auto o = static_cast<std::size_t>(output);
     const std::string& name = layout.output_names[o];
+    const std::vector<Index> needed = listNeeded(layout.times, name, features);
+    if (needed.empty()) {
+      continue;
+    }
     const std::string column = findColumnSpec(spec, name).name;
     const ClockedRows& clocked = recording.getRows(name);
     const Samples samples = readSamples(clocked, spec, layout, o);
     const std::optional<Bounds> range = findRange(spec, name);
     addOutput(clocked.rows, column, SampleFinder(samples, clocked.start, spacing, range), range, layout,
-              output, available);
+              output, needed, available);
   }
   std::vector<std::string> remarks = recording.takeRemarks();
   available.remarks.insert(available.remarks.begin(), remarks.begin(), remarks.end());

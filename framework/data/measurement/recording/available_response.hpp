@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "framework/data/measurement/files/table.hpp"
+#include "framework/experiment/feature_spec.hpp"
 #include "framework/experiment/measurement_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
 
@@ -42,7 +43,10 @@ AvailableResponse readModesBeside(const Table& table, const MeasurementSpec& spe
 /// missing. Modes are read from a table of their own (readModes), or from the table itself where the layout
 /// has no times. Throws MeasurementError for an output without any needed sample and one that is the same at
 /// all of them (a dead sensor).
+/// features: what the samples are for. Outputs of none are not read; where all are samples, an output's
+/// samples are missing only at times at which one of them asks for it. Empty: all are needed.
 AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
-                                double start, std::optional<double> interval = {});
+                                double start, std::optional<double> interval = {},
+                                const std::vector<FeatureSpec>& features = {});
 
 }  // namespace twinmap

@@ -99,6 +99,48 @@ TEST(AvailableResponse, TakesAColumnAtALowerRateWhereItHasSamples) {
   EXPECT_EQ(expectRight(readAvailable(table, {}, makeTwoOutputs(), 0.0), 1e-12), 14);
 }
 
+/// A feature of samples of an output, each `interval` s, from there on.
+FeatureSpec sampleOf(const char* output, double interval, int count) {
+  SamplesFeatureSpec samples;
+  samples.outputs = {Name{output, {}}};
+  samples.start = interval;
+  samples.interval = interval;
+  samples.count = count;
+  return samples;
+}
+
+TEST(AvailableResponse, IsMissingOnlyWhereAFeatureAsksForIt) {
+  Table table = record(0.1);
+  for (Index i = 0; i < table.columns[2].values.size(); ++i) {
+    table.columns[2].values[i] = i % 2 == 0 ? table.columns[2].values[i] : kNone;  // each .2 s
+  }
+  const AvailableResponse available =
+      readAvailable(table, {}, makeTwoOutputs(), 0.0, {}, {sampleOf("a", 0.1, 20), sampleOf("b", 0.2, 10)});
+  EXPECT_EQ(available.missing, 0);
+  EXPECT_TRUE(available.remarks.empty());
+}
+
+TEST(AvailableResponse, NeedsNoColumnOfAnOutputThatNoFeatureUses) {
+  Table table = record(0.1);
+  table.columns.pop_back();
+  const AvailableResponse available =
+      readAvailable(table, {}, makeTwoOutputs(), 0.0, {}, {sampleOf("a", 0.1, 20)});
+  EXPECT_EQ(available.missing, 0);
+  EXPECT_THROW(readAvailable(table, {}, makeTwoOutputs(), 0.0), MeasurementError);
+}
+
+TEST(AvailableResponse, SaysThatItsSamplesLieBetween) {
+  Table table = record(0.55);
+  table.columns[0].values.array() += 0.01;
+  try {
+    readAvailable(table, {}, makeTwoOutputs(), 0.0);
+    ADD_FAILURE() << "accepted";
+  } catch (const MeasurementError& error) {
+    EXPECT_NE(std::string(error.what()).find("but 3 between them, 0.55 s apart"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(AvailableResponse, DoesNotInterpolateOverLostRows) {
   Table table = record(0.04);
   const Index rows = table.columns[0].values.size();

@@ -7,7 +7,7 @@
 #include <functional>
 #include <set>
 
-#include "framework/data/measurement/table.hpp"
+#include "framework/data/measurement/files/table.hpp"
 
 namespace twinmap {
 namespace {
