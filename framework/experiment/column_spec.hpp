@@ -14,7 +14,8 @@ struct ColumnSpec {
   SourceLocation where;
 };
 
-/// The name, and the unit if the text ends in one within brackets; both without blanks around them.
+/// The name, and the unit if the text ends in one within brackets; both without blanks around them. Round
+/// brackets behind a blank hold one where UDUNITS-2 knows it: "Force (N)".
 ColumnSpec parseColumn(const std::string& text, const SourceLocation& where = {});
 
 /// "enc1 [mm]", or "enc1".

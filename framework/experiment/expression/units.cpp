@@ -35,6 +35,15 @@ void addDegree(ut_system* system) {
   ut_map_name_to_unit("deg", UT_ASCII, degree.get());
 }
 
+/// Torques as everybody writes them, with prefixes: mNm.
+void addTorques(ut_system* system) {
+  for (const auto& [symbol, unit] :
+       {std::pair{"Nm", "N m"}, std::pair{"Ncm", "N cm"}, std::pair{"Nmm", "N mm"}}) {
+    const std::unique_ptr<ut_unit, FreeUnit> torque(ut_parse(system, unit, UT_ASCII));
+    ut_map_symbol_to_unit(symbol, UT_ASCII, torque.get());
+  }
+}
+
 /// UDUNITS' own database of SI units, read once.
 const ut_system& getUnitSystem() {
   static const std::unique_ptr<ut_system, FreeSystem> kSystem([] {
@@ -42,6 +51,7 @@ const ut_system& getUnitSystem() {
     ut_system* system = ut_read_xml(nullptr);
     if (system != nullptr) {
       addDegree(system);
+      addTorques(system);
     }
     return system;
   }());
@@ -179,13 +189,24 @@ UnitConversion calcUnitConversion(const std::string& from, const std::string& to
     return {};
   }
   const std::lock_guard<std::mutex> guard(udunits);
-  const UnitHandle source = parse(from, where), target = parse(to, where);
+  const UnitHandle target = parse(to, where);
+  UnitHandle source = parse(from, where);
+  if (from == "g" && ut_are_convertible(source.get(), target.get()) == 0) {
+    source = parse("standard_free_fall", where);  // of an acceleration
+  }
   const std::unique_ptr<cv_converter, FreeConverter> converter(ut_get_converter(source.get(), target.get()));
   if (converter == nullptr) {
     throw ExperimentError(where, from, "does not convert to " + (to.empty() ? "a number" : to));
   }
   const double offset = cv_convert_double(converter.get(), 0.0);
   return {cv_convert_double(converter.get(), 1.0) - offset, offset};
+}
+
+bool isUnit(const std::string& text) {
+  const bool has_letter =
+      std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
+  const std::lock_guard<std::mutex> guard(udunits);
+  return has_letter && UnitHandle(ut_parse(&getUnitSystem(), text.c_str(), UT_UTF8)) != nullptr;
 }
 
 std::optional<double> findWholeTurn(const std::string& unit) {

@@ -28,10 +28,14 @@ struct UnitConversion {
   double apply(double value) const { return factor * value + offset; }
 };
 
-/// From any unit that UDUNITS-2 knows (mm, deg, kN, degC ...; "" and "-" are 1) to another of its dimension.
+/// From any unit that UDUNITS-2 knows (mm, deg, kN, degC ...; "" and "-" are 1) to another of its dimension;
+/// Nm, Ncm and Nmm are torques, "g" is the acceleration of gravity where an acceleration is wanted.
 /// Throws ExperimentError for an unknown unit and for one of another dimension.
 UnitConversion calcUnitConversion(const std::string& from, const std::string& to,
                                   const SourceLocation& where);
+
+/// Whether a text with a letter is a unit that UDUNITS-2 knows.
+bool isUnit(const std::string& text);
 
 /// A whole turn in a unit of angles ("rad", "deg", "mrad"); none of others, pure numbers among them.
 std::optional<double> findWholeTurn(const std::string& unit);

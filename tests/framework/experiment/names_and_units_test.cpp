@@ -20,6 +20,17 @@ TEST(SuggestName, FindsTypingErrorsOnly) {
   EXPECT_EQ(suggestName(std::string(1000000, 'x'), names), "");
 }
 
+TEST(Units, OfTorquesAndAccelerationsAreReadAsTheyAreWritten) {
+  EXPECT_NEAR(calcUnitConversion("Nm", "N m", {}).factor, 1.0, 1e-12);
+  EXPECT_NEAR(calcUnitConversion("mNm", "N m", {}).factor, 1e-3, 1e-15);
+  EXPECT_NEAR(calcUnitConversion("Ncm", "N m", {}).factor, 1e-2, 1e-14);
+  EXPECT_NEAR(calcUnitConversion("g", "m/s2", {}).factor, 9.80665, 1e-12);
+  EXPECT_NEAR(calcUnitConversion("g", "kg", {}).factor, 1e-3, 1e-15);
+  EXPECT_TRUE(isUnit("ms"));
+  EXPECT_FALSE(isUnit("left"));
+  EXPECT_FALSE(isUnit("1"));
+}
+
 TEST(Units, DimensionsFollowFromTheUnit) {
   EXPECT_EQ(parseUnit("N s/m", {}), (Dimension{{"kg", 1}, {"s", -1}}));
   EXPECT_EQ(parseUnit("N m s/rad", {}), (Dimension{{"kg", 1}, {"m", 2}, {"s", -1}}));

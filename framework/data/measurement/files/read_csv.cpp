@@ -122,14 +122,27 @@ class CsvReader {
     bool has_name = false;
     double number = 0.0;
     for (CsvCells cells(line, separator_); cells.next(cell);) {
-      has_name = has_name || (!cell.empty() && parseNumber(cell, number) != nullptr);
+      has_name = has_name || (!cell.empty() && !isCsvNumber(cell) && parseNumber(cell, number) != nullptr);
+    }
+    for (CsvCells cells(line, separator_); has_name && cells.next(cell);) {
       addColumn(cell);
     }
     if (!has_name) {
-      fail("must name the columns, in the first line");
+      numberColumns();
+      return;
     }
     if (layout.has_units && nextLine(line)) {
       readUnits(line);
+    }
+  }
+
+  /// Of a table without a line of names: "1", "2", ..., and that line is the first row.
+  void numberColumns() {
+    std::string_view cell;
+    --next_looked_at_;
+    std::size_t number = 0;
+    for (CsvCells cells(looked_at_[next_looked_at_].text, separator_); cells.next(cell);) {
+      addColumn(std::to_string(++number));
     }
   }
 
