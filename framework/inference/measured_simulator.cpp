@@ -18,9 +18,10 @@ using Eigen::VectorXd;
 
 namespace {
 
-ResponseNoise makeNoise(const NoiseSpec& spec, const ResponseLayout& layout, const VectorXd& stddev) {
+ResponseNoise makeNoise(const NoiseSpec& spec, const ResponseLayout& layout, const StatedNoise& stated) {
   ResponseNoise noise(spec, layout);
-  noise.replace(stddev);
+  noise.replace(stated.rows);
+  noise.share(stated.common);
   return noise;
 }
 
@@ -53,7 +54,7 @@ MeasuredSimulator::MeasuredSimulator(const ExperimentSpec& experiment, const Res
       noise_scale_(experiment.noise.scale),
       extractor_(makeExtractor(experiment, layout)),
       simulator_(std::move(simulator)),
-      noise_(extractor_, makeNoise(experiment.noise, layout, stated.rows), experiment.seed, stated.features),
+      noise_(extractor_, makeNoise(experiment.noise, layout, stated), experiment.seed, stated.features),
       stated_noise_(findUnknownNoise(experiment.noise, layout)),
       wanted_(shouldRefine(experiment.refine, *simulator_, noise_)),
       own_(simulator_->clone()) {}

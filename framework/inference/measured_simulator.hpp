@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/data/measurement/recording/available_response.hpp"
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/data/noise/stated_noise.hpp"
 #include "framework/estimation/posterior/posterior_problem.hpp"

@@ -66,9 +66,9 @@ PosteriorEstimate SimulatorSampler::sampleUnder(const NoiseHypothesis& noise, co
   return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
 }
 
-PosteriorEstimate SimulatorSampler::samplePosterior(const VectorXd& features, const VectorXd& known,
-                                                    const NoiseHypothesis& stated, const MatrixXd& given,
-                                                    const SimulatorPosteriorOptions& options) const {
+PosteriorEstimate SimulatorSampler::sampleAsStated(const VectorXd& features, const VectorXd& known,
+                                                   const NoiseHypothesis& stated, const MatrixXd& given,
+                                                   const SimulatorPosteriorOptions& options) const {
   const bool is_known = stated.outputs.empty();
   PosteriorEstimate sampled =
       sampleUnder(is_known ? stated : guessSizes(stated, *makeTrial(features, known).model, features),
@@ -76,6 +76,13 @@ PosteriorEstimate SimulatorSampler::samplePosterior(const VectorXd& features, co
   if (!is_known && sampled.fit->isSimulated()) {
     sampled = sampleUnder(stated, features, known, sampled.fit->best, options);
   }
+  return sampled;
+}
+
+PosteriorEstimate SimulatorSampler::samplePosterior(const VectorXd& features, const VectorXd& known,
+                                                    const NoiseHypothesis& stated, const MatrixXd& given,
+                                                    const SimulatorPosteriorOptions& options) const {
+  PosteriorEstimate sampled = sampleAsStated(features, known, stated, given, options);
   if (!sampled.fit->isSimulated() || sampled.fit->isPlausible()) {
     return sampled;
   }
@@ -150,6 +157,23 @@ std::vector<NoiseHypothesis> SimulatorSampler::listNoise(const NoiseHypothesis& 
     return {};
   }
   return listNoiseHypotheses(stated, {trial.model, local.residual, local.jacobian});
+}
+
+std::optional<LinearizedMeasurement> SimulatorSampler::linearize(const VectorXd& features,
+                                                                 const VectorXd& known,
+                                                                 const VectorXd& best) const {
+  const MeasuredTrial trial = makeTrial(features, known);
+  const SearchBox box(getUnknown(), {0, static_cast<Index>(getUnknown().size())}, trial.held);
+  Misfit misfit(updSimulator(), *trial.model, box, features);
+  VectorXd point = trial.held;
+  point.head(best.size()) = best;
+  LocalMisfit local = misfit.linearize(box.normalize(point));
+  if (!local.status.ok) {
+    return std::nullopt;
+  }
+  const GrowingWindow& whole = trial.model->getWhole();
+  return LinearizedMeasurement{std::move(local.residual), std::move(local.jacobian), whole.features,
+                               whole.whitener};
 }
 
 MatrixXd SimulatorSampler::listRidgePoints(const PosteriorEstimate& posterior) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,15 @@ namespace twinmap {
 /// kMinPosteriorDraws.
 SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws);
 
+/// A measurement about a point: whitened residual (k) and minus its derivatives (k x u, in half-widths of the
+/// bounds).
+struct LinearizedMeasurement {
+  Eigen::VectorXd residual;
+  Eigen::MatrixXd jacobian;
+  std::vector<Eigen::Index> features;     ///< of the rows, where they are not singular
+  std::optional<NoiseWhitener> whitener;  ///< of these; none where their noise depends on the response
+};
+
 /// Posteriors of measurements on the simulator of their experiment.
 class SimulatorSampler : public MeasuredSimulator {
  public:
@@ -25,7 +35,12 @@ class SimulatorSampler : public MeasuredSimulator {
                                 const Eigen::VectorXd& known, const Eigen::MatrixXd& given,
                                 const SimulatorPosteriorOptions& options) const;
 
-  /// The same under the stated noise (describeNoise) or, where that does not explain the measurement, under
+  /// The same under the stated noise (describeNoise), searched first with a guess of sizes that are unknown.
+  PosteriorEstimate sampleAsStated(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                                   const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
+                                   const SimulatorPosteriorOptions& options) const;
+
+  /// The same under the stated noise or, where that does not explain the measurement, under
   /// the first of other hypotheses that does (listNoiseHypotheses): a few samples left out, noise of another
   /// size, an offset, coloured noise. What is coloured and larger than stated may as well be physics that the
   /// model lacks, and more than one sample in twenty are not exceptions: then the stated one's it is. Cost:
@@ -44,6 +59,12 @@ class SimulatorSampler : public MeasuredSimulator {
   /// The ridges along which draws of a posterior lie or, where it is not reliable, the floors of its valleys;
   /// none where derivatives are not exact. Cost: 32 simulations with derivatives.
   std::vector<Ridge> findRidges(const PosteriorEstimate& posterior, const Eigen::VectorXd& known) const;
+
+  /// A measurement (features, d, NaN where missing) about the best unknown parameters (u); none where they
+  /// cannot be simulated. Cost: a simulation with derivatives.
+  std::optional<LinearizedMeasurement> linearize(const Eigen::VectorXd& features,
+                                                 const Eigen::VectorXd& known,
+                                                 const Eigen::VectorXd& best) const;
 
   /// The least chi-square of few searches (twinmap::findLeastChiSquare), to compare gross misfits; in
   /// proportion where only some of `all` features are there, infinite where half are missing.

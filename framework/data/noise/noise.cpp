@@ -170,6 +170,15 @@ Eigen::MatrixXd ResponseNoise::add(const Eigen::MatrixXd& responses, const Rando
 }
 
 NoiseCovariance ResponseNoise::calcCovariance(const FeatureMatrix& matrix) const {
+  const NoiseCovariance own = calcOwnCovariance(matrix);
+  if (common_.cols() == 0) {
+    return own;
+  }
+  const Eigen::MatrixXd common = matrix * common_;
+  return Eigen::MatrixXd(own.toMatrix() + common * common.transpose());
+}
+
+NoiseCovariance ResponseNoise::calcOwnCovariance(const FeatureMatrix& matrix) const {
   if (blocks_.empty()) {
     const FeatureMatrix scaled = matrix * stddev_.asDiagonal();
     const FeatureMatrix product = scaled * scaled.transpose();

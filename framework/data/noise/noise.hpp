@@ -33,6 +33,10 @@ class ResponseNoise {
   /// Throws std::invalid_argument for a row whose noise is correlated with others.
   void replace(const Eigen::VectorXd& row_stddev);
 
+  /// Adds what rows have in common (rows x r): independent unit normal numbers, each in its column's
+  /// proportions. It counts in calcCovariance() alone. Without columns nothing changes.
+  void share(const Eigen::MatrixXd& common) { common_ = common; }
+
   /// That of rounding included.
   const Eigen::VectorXd& getStddev() const { return stddev_; }
 
@@ -52,11 +56,13 @@ class ResponseNoise {
     std::vector<Eigen::Index> rows;
     Eigen::MatrixXd factor;  ///< lower Cholesky factor of their correlation
   };
+  NoiseCovariance calcOwnCovariance(const FeatureMatrix& matrix) const;
   void correlate(const NoiseCorrelationSpec& spec, const ResponseLayout& layout);
 
   Eigen::VectorXd stddev_, drawn_;  ///< with and without rounding
   Eigen::VectorXd quanta_;          ///< of each row, 0: not rounded; empty: none is
   std::vector<Block> blocks_;
+  Eigen::MatrixXd common_;  ///< rows x r; empty: none
 };
 
 /// Responses (rows x n) plus noise (ResponseNoise::add).

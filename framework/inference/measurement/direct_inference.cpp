@@ -3,15 +3,21 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
+#include "framework/base/text/number_text.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
 #include "framework/experiment/check/unused_parameters.hpp"
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/derived_values.hpp"
+#include "framework/inference/measurement/excitation_noise.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
+#include "framework/inference/measurement/spikes.hpp"
+#include "framework/inference/measurement/unknown_excitation.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/models/model_remarks.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -74,6 +80,24 @@ void requireModes(const AvailableFeatures& found, const MeasurementReader& reade
                       "or write modes: {{..., {}: false}}",
                       source, column, key));
     }
+  }
+}
+
+std::vector<std::string> listMeasured(const ModelSpec& model) {
+  std::vector<std::string> names;
+  for (const SignalSpec& signal : model.excitation) {
+    if (std::any_of(signal.tables.begin(), signal.tables.end(),
+                    [](const TableSpec& table) { return table.measured.has_value(); })) {
+      names.push_back(signal.name.text);
+    }
+  }
+  return names;
+}
+
+/// Noise of unknown size is stated as that of another: what is common to its rows is in units of that.
+void divideByNoise(const ResponseLayout& layout, const FoundNoise& found, Eigen::MatrixXd& common) {
+  if (found.size_was_inferred) {
+    common.middleRows(layout.getRow(found.output, 0), layout.times.size()) /= found.factor;
   }
 }
 
@@ -158,23 +182,31 @@ DirectInference::LikeRecording* DirectInference::follow(const Table& table, std:
 }
 
 InferredMeasurement DirectInference::infer(const Table& table, std::optional<double> start,
-                                           const AvailableFeatures& found, const Eigen::VectorXd& known) {
-  requireModes(found, reader_, table.source);
-  std::optional<SimulatorRefiner> own;  // with the noise that the measurement states
-  if (found.stated.isGiven()) {
-    own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(),
-                found.stated);
+                                           const AvailableFeatures& read, const Eigen::VectorXd& known) {
+  requireModes(read, reader_, table.source);
+  AvailableFeatures found = read;
+  std::optional<SimulatorRefiner> own;  // with the noise that the measurement and its excitation state
+  StatedNoise stated = found.stated;
+  stated.common = findCommonNoise(found, known);
+  if (stated.isGiven() || stated.common.cols() > 0) {
+    own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(), stated);
   }
   const SimulatorRefiner& simulator = own ? *own : simulator_;
   InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);
+  tryWithoutSpikes(simulator, found, known, inferred);
   inferred.source = table.source;
   inferred.start = reader_.getStart(table, start);
   inferred.left_out = found.remarks;
+  inferred.remarks = describeBridged(reader_.getExperiment().model);
   if (tryClock(found, known, inferred)) {
     return inferred;
   }
   inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
   inferred.against = listAgainst(inferred);
+  if (inferred.fault.empty()) {
+    const std::vector<std::string> noisy = describeInputNoise(simulator, found, known, *inferred.posterior);
+    inferred.remarks.insert(inferred.remarks.end(), noisy.begin(), noisy.end());
+  }
   return inferred;
 }
 
@@ -185,6 +217,106 @@ std::vector<std::string> DirectInference::listAgainst(const InferredMeasurement&
                                 status == getNotice(Notice::kUnreliable).name;
   return explains_nothing && inferred.fault.empty() ? listModelRemarks(reader_.getExperiment().model)
                                                     : std::vector<std::string>{};
+}
+
+void DirectInference::tryWithoutSpikes(const SimulatorRefiner& simulator, AvailableFeatures& found,
+                                       const Eigen::VectorXd& known, InferredMeasurement& inferred) const {
+  constexpr double kLess = 0.5;
+  const std::optional<SimulatorFit>& fit = inferred.posterior->fit;
+  if (!fit || !fit->isSimulated() || fit->isPlausible() || !areSamples(reader_.getExperiment().features)) {
+    return;
+  }
+  const SpikedFeatures spiked =
+      findSpikedFeatures(found.response, reader_.getLayout(), reader_.getExtractor().getInfos());
+  if (spiked.features.empty()) {
+    return;
+  }
+  AvailableFeatures without = found;
+  without.response(spiked.rows).setConstant(std::numeric_limits<double>::quiet_NaN());
+  without.features(spiked.features).setConstant(std::numeric_limits<double>::quiet_NaN());
+  for (const Eigen::Index feature : spiked.features) {
+    without.available.erase(std::remove(without.available.begin(), without.available.end(), feature),
+                            without.available.end());
+  }
+  InferredMeasurement other = infer(simulator, without.features, known, without.clipped);
+  const std::optional<SimulatorFit>& own = other.posterior->fit;
+  if (own && own->isSimulated() && (own->isPlausible() || own->chi_square < kLess * fit->chi_square)) {
+    inferred = std::move(other);
+    std::vector<std::string>& outliers = inferred.posterior->fit->outliers;
+    outliers.insert(outliers.end(), spiked.said.begin(), spiked.said.end());
+    found = std::move(without);
+  }
+}
+
+Eigen::MatrixXd DirectInference::findCommonNoise(const AvailableFeatures& found,
+                                                 const Eigen::VectorXd& known) const {
+  constexpr int kTimes = 2;  // where it moves the fit by much, the second time less
+  const ModelSpec& model = reader_.getExperiment().model;
+  if (!hasUnknownExcitation(model) || !simulator_.findFailure(known).empty()) {
+    return {};
+  }
+  const SearchStage stage("what the unknown of the excitation does");
+  SimulatorPosteriorOptions options = options_;
+  options.draws = std::min(options.draws, kMinPosteriorDraws);
+  StatedNoise stated = found.stated;
+  Eigen::MatrixXd given;
+  for (int i = 0; i < kTimes; ++i) {
+    const SimulatorRefiner simulator(reader_.getExperiment(), reader_.getLayout(),
+                                     simulator_.getSimulator().clone(), stated);
+    const PosteriorEstimate fitted = simulator.sampleAsStated(
+        found.features, known, simulator.describeNoise(found.clipped), given, options);
+    if (!fitted.fit || !fitted.fit->isSimulated()) {
+      return {};
+    }
+    given = fitted.fit->best;
+    Eigen::VectorXd point(given.rows() + known.size());
+    point << given, known;
+    stated.common = calcUnknownResponses(model, reader_.getLayout(), point);
+    for (const NoiseReport& report : fitted.fit->noise) {
+      divideByNoise(reader_.getLayout(), report.found, stated.common);
+    }
+  }
+  return stated.common;
+}
+
+std::vector<std::string> DirectInference::describeInputNoise(const SimulatorRefiner& simulator,
+                                                             const AvailableFeatures& found,
+                                                             const Eigen::VectorXd& known,
+                                                             const PosteriorEstimate& posterior) const {
+  constexpr double kShare = 0.01;       // of the signal's root mean square; the effect of less is linear
+  constexpr Eigen::Index kMost = 3000;  // features: its cost is their cube
+  const ModelSpec& model = reader_.getExperiment().model;
+  std::vector<std::string> described;
+  if (!posterior.fit || !posterior.fit->isSimulated() || !simulator.samplesFast() ||
+      !areSamples(reader_.getExperiment().features) ||
+      static_cast<Eigen::Index>(found.available.size()) > kMost) {
+    return described;
+  }
+  std::optional<LinearizedMeasurement> local;
+  for (std::size_t s = 0; s < model.excitation.size(); ++s) {
+    double size = 0.0;
+    const std::optional<ModelSpec> supposed = supposeNoise(model, s, kShare, size);
+    if (!supposed) {
+      continue;
+    }
+    local = local ? local : simulator.linearize(found.features, known, posterior.fit->best);
+    if (!local || !local->whitener) {
+      return described;
+    }
+    Eigen::VectorXd point(posterior.fit->best.size() + known.size());
+    point << posterior.fit->best, known;
+    const Eigen::MatrixXd responses = calcUnknownResponses(*supposed, reader_.getLayout(), point);
+    const double found_size = findNoiseSize(*local, simulator.getExtractor(), responses, *posterior.fit);
+    if (found_size > 0.0) {
+      described.push_back(
+          fmt::format("noise of {} of about {} {} ({} % of it) may be what is left, and moves the parameters "
+                      "by more than "
+                      "their standard deviations say: if its sensor has so much, state it as measured.noise",
+                      model.excitation[s].name.text, toShortText(found_size * size, 2),
+                      model.excitation[s].unit, toShortText(100.0 * kShare * found_size, 2)));
+    }
+  }
+  return described;
 }
 
 bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
@@ -225,7 +357,8 @@ std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, co
     return simulator.findLeastChiSquare(simulator.getExtractor().extract(corrected), known,
                                         static_cast<Eigen::Index>(found.available.size()));
   };
-  return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit);
+  return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit,
+                        listMeasured(reader_.getExperiment().model));
 }
 
 std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec) {

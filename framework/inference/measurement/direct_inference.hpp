@@ -56,6 +56,22 @@ class DirectInference final : public MeasurementInference {
   InferredMeasurement infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
                             const Eigen::VectorXd& known, const std::vector<ClippedSample>& clipped) const;
 
+  /// Where a measurement is not explained: the same without its spikes (findSpikedFeatures), if that explains
+  /// it or leaves less than half of the misfit. They are then what is not noise, beside whatever else is
+  /// wrong.
+  void tryWithoutSpikes(const SimulatorRefiner& simulator, AvailableFeatures& found,
+                        const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
+
+  /// What rows have in common, at the best fit without it: of what is not known of the excitation
+  /// (calcUnknownResponses); without columns where all is known.
+  Eigen::MatrixXd findCommonNoise(const AvailableFeatures& found, const Eigen::VectorXd& known) const;
+
+  /// What noise of a measured excitation, where none is stated, may have to do with what is left, a phrase
+  /// for each signal of which it is significant (once in a thousand) and that would leave nothing else.
+  std::vector<std::string> describeInputNoise(const SimulatorRefiner& simulator,
+                                              const AvailableFeatures& found, const Eigen::VectorXd& known,
+                                              const PosteriorEstimate& posterior) const;
+
   /// The simple fault of the recording that explains a gross misfit, or "".
   std::string explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,
                             const Eigen::VectorXd& known, const PosteriorEstimate& posterior) const;

@@ -1,11 +1,15 @@
 #include "framework/inference/measurement/measurement_faults.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
+
+#include "framework/base/text/number_text.hpp"
+#include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {
 namespace {
@@ -13,7 +17,8 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr Index kFewestEqual = 4;  // of numbers with noise no two are the same
+constexpr double kClearlyLess = 0.5;  // of the chi-square of a zero
+constexpr Index kFewestEqual = 4;     // of numbers with noise no two are the same
 
 /// `example` is given where the output's unit contains `unit`.
 struct UnitFactor {
@@ -32,9 +37,15 @@ constexpr UnitFactor kFactors[] = {
     {0.01, "100 times too small", "", "", "multiply it by 100"},
     {-1.0, "of the other sign", "", "", "turn its sign"}};
 
-std::string describe(const UnitFactor& factor, const std::string& output, const std::string& unit) {
-  const bool applies = unit.find(factor.unit) != std::string::npos;
-  return fmt::format("{} is {}{}: {}", output, factor.said, applies ? factor.example : "", factor.remedy);
+std::string describe(const UnitFactor& factor, const std::vector<std::string>& outputs,
+                     const std::string& unit) {
+  const bool applies = unit.find(factor.unit) != std::string::npos, one = outputs.size() == 1;
+  std::string remedy = factor.remedy;
+  if (const std::size_t it = remedy.find(" it "); it != std::string::npos && !one) {
+    remedy.replace(it, 4, " each ");
+  }
+  return fmt::format("{} {} {}{}: {}", fmt::join(outputs, " and "), one ? "is" : "are", factor.said,
+                     applies ? factor.example : "", remedy);
 }
 
 /// The measurement without what is added to some rows: so much of `shape`.
@@ -211,19 +222,117 @@ void tryDrift(const VectorXd& measured, const ResponseLayout& layout, Index outp
                             unit.empty() ? "" : " " + unit));
 }
 
+/// The modulus of a counter that begins again: what jumps there is more than the steps about it; 0 where none
+/// of its samples do.
+double calcModulus(const VectorXd& values) {
+  const std::vector<Index> jumps = findTurnJumps(values, values.maxCoeff() - values.minCoeff());
+  std::vector<double> moduli;
+  for (const Index i : jumps) {
+    if (i > 1 && i + 1 < values.size()) {
+      const double step = 0.5 * (values[i - 1] - values[i - 2] + values[i + 1] - values[i]);
+      moduli.push_back(std::abs(values[i] - values[i - 1] - step));
+    }
+  }
+  if (moduli.empty()) {
+    return 0.0;
+  }
+  const auto middle = moduli.begin() + static_cast<std::ptrdiff_t>(moduli.size() / 2);
+  std::nth_element(moduli.begin(), middle, moduli.end());
+  return *middle;
+}
+
+/// A counter that wraps: by a modulus of few digits, or by what it jumps.
+void tryWrap(const VectorXd& measured, const ResponseLayout& layout, Index output, Search& search) {
+  const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
+  const Index times = layout.times.size(), first = layout.getRow(output, 0);
+  const VectorXd values = measured.segment(first, times);
+  const double modulus = values.allFinite() ? calcModulus(values) : 0.0;
+  for (const int digits : {1, 2, 3, 6}) {
+    const std::string text = toShortText(modulus, digits);
+    const double rounded = std::stod(text);
+    if (rounded <= 0.0) {
+      continue;
+    }
+    VectorXd whole = measured;
+    whole.segment(first, times) = unwrap(layout.times, values, rounded);
+    const double lowest = values.minCoeff() >= 0.0 ? 0.0 : -0.5 * rounded;
+    search.tryOut(whole, fmt::format("{} jumps by {} {} again and again, as a counter that wraps: give "
+                                     "measurement.unwrap: [{}] and measurement.range: {{{}: [{}, {}]}}",
+                                     name, text, layout.output_units[static_cast<std::size_t>(output)], name,
+                                     name, toShortText(lowest, 6), toShortText(lowest + rounded, 6)));
+  }
+}
+
+using Outputs = std::vector<Index>;
+
+/// All outputs, and those of which a unit is usual.
+std::vector<Outputs> listTogether(const ResponseLayout& layout, const std::string& unit) {
+  Outputs all, usual;
+  for (Index o = 0; o < layout.getOutputCount(); ++o) {
+    all.push_back(o);
+    if (layout.output_units[static_cast<std::size_t>(o)].find(unit) != std::string::npos) {
+      usual.push_back(o);
+    }
+  }
+  return usual.size() < 2 || usual.size() == all.size() ? std::vector<Outputs>{all}
+                                                        : std::vector<Outputs>{all, usual};
+}
+
+/// What else may be wrong where all outputs are by a factor.
+std::string describeExcitation(const UnitFactor& unit, const std::vector<std::string>& signals) {
+  const bool large = unit.factor > 1.0;
+  return signals.empty() ? ""
+                         : fmt::format(
+                               "; in a linear machine the recording does not tell that from {} being {:.4g} "
+                               "times too {}: look which it is",
+                               fmt::join(signals, " and "), large ? unit.factor : 1.0 / unit.factor,
+                               large ? "small" : "large");
+}
+
+/// Several outputs by one factor.
+void tryCommonUnit(const VectorXd& measured, const ResponseLayout& layout, const UnitFactor& unit,
+                   const std::vector<std::string>& signals, double largest,
+                   const MisfitOfResponse& calcMisfit, Search& search) {
+  for (const Outputs& together : listTogether(layout, unit.unit)) {
+    VectorXd corrected = measured;
+    std::vector<std::string> names;
+    for (const Index o : together) {
+      corrected.segment(layout.getRow(o, 0), layout.times.size()) /= unit.factor;
+      names.push_back(layout.output_names[static_cast<std::size_t>(o)]);
+    }
+    const bool all = static_cast<Index>(together.size()) == layout.getOutputCount();
+    const std::string excitation = all ? describeExcitation(unit, signals) : "";
+    if ((together.size() > 1 || !excitation.empty()) &&
+        (unit.factor <= 1.0 || calcMisfit(corrected) < largest)) {
+      const std::string& own = layout.output_units[static_cast<std::size_t>(together.front())];
+      search.tryOut(corrected, describe(unit, names, own) + excitation);
+    }
+  }
+}
+
+void tryCommonUnits(const VectorXd& measured, const ResponseLayout& layout,
+                    const std::vector<std::string>& signals, const MisfitOfResponse& calcMisfit,
+                    Search& search) {
+  const double largest = kClearlyLess * calcMisfit(VectorXd::Zero(measured.size()));
+  for (const UnitFactor& unit : kFactors) {
+    if (unit.factor > 0.0) {
+      tryCommonUnit(measured, layout, unit, signals, largest, calcMisfit, search);
+    }
+  }
+}
+
 /// Factors between units. One that makes an output small explains it only where a zero does not do as well.
 void tryUnits(const VectorXd& measured, const ResponseLayout& layout, Index output,
               const MisfitOfResponse& calcMisfit, Search& search) {
-  constexpr double kClearly = 0.5;  // of the chi-square of a zero
   const Index times = layout.times.size(), first = layout.getRow(output, 0);
   VectorXd silent = measured;
   silent.segment(first, times).setZero();
-  const double largest = kClearly * calcMisfit(silent);
+  const double largest = kClearlyLess * calcMisfit(silent);
   for (const UnitFactor& unit : kFactors) {
     VectorXd corrected = measured;
     corrected.segment(first, times) /= unit.factor;
     if (unit.factor <= 1.0 || calcMisfit(corrected) < largest) {
-      search.tryOut(corrected, describe(unit, layout.output_names[static_cast<std::size_t>(output)],
+      search.tryOut(corrected, describe(unit, {layout.output_names[static_cast<std::size_t>(output)]},
                                         layout.output_units[static_cast<std::size_t>(output)]));
     }
   }
@@ -232,7 +341,8 @@ void tryUnits(const VectorXd& measured, const ResponseLayout& layout, Index outp
 }  // namespace
 
 std::string explainByFault(const VectorXd& measured, const ResponseLayout& layout, double chi_square,
-                           Index residuals, const MisfitOfResponse& calcMisfit) {
+                           Index residuals, const MisfitOfResponse& calcMisfit,
+                           const std::vector<std::string>& signals) {
   constexpr double kGross =
       100.0;  // chi-square a residual: sensors and units do that, missing physics rarely
   constexpr double kLeft = 0.01;
@@ -244,9 +354,11 @@ std::string explainByFault(const VectorXd& measured, const ResponseLayout& layou
   if (layout.getOutputCount() > 1) {
     search.tryOut(-measured, "all outputs are of the other sign: turn their signs");
   }
+  tryCommonUnits(measured, layout, signals, calcMisfit, search);
   for (Index output = 0; output < layout.getOutputCount(); ++output) {
     const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
     const Index first = layout.getRow(output, 0);
+    tryWrap(measured, layout, output, search);
     tryUnits(measured, layout, output, calcMisfit, search);
     trySpikes(measured, layout, output, calcMisfit, search);
     tryStandstill(measured, layout, output, search);

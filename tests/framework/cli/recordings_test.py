@@ -46,6 +46,7 @@ class Recorders(FolderTestCase):
         cls.t = fine[::200]
         cls.x = states[::200, 0] + NOISE * generator.normal(size=len(cls.t))
         cls.v = states[::200, 1] + 10 * NOISE * generator.normal(size=len(cls.t))
+        cls.v_at = lambda self, t: np.interp(t, fine, states[:, 1]) + 10 * NOISE * generator.normal(size=len(t))
         clock = np.arange(-100, 1000) * 0.01
         cls.write("force.csv", {"t": clock, "F": calc_force(clock - TRUE["late"])})
         cls.write("m.csv", {"t": cls.t, "x": cls.x, "v": cls.v})
@@ -87,6 +88,36 @@ class Recorders(FolderTestCase):
         self.assertAlmostEqual(found["start"], 3.0)
         self.assert_right(found, ["k", "d"])
         self.assertEqual(found.get("left_out", []), [])
+
+    def test_all_commands_take_features_at_the_times_of_a_recording(self):
+        """A sensor with a file, a clock and a rate of its own: slower than the features ask for."""
+        rows = slice(3, None, 3)
+        self.write("slow.csv", {"clock": self.t[rows] + 0.003 + 7, "v": self.v_at(self.t[rows] + 0.003)})
+        known = EXPERIMENT.replace("  late: {bounds: [-0.05, 0.05], unit: s}\n", "").replace("DELAY", "0.02")
+        known += "measurement: {columns: {v: {column: v, file: slow.csv, time: clock, delay: 7}}}\n"
+        for sensor in ("", ", sensor: {delay: 0}", ", sensor: {delay: lag}"):
+            nuisance = "nuisance: {lag: {bounds: [-0.01, 0.01], unit: s}}\n" if "lag" in sensor else ""
+            experiment = known.replace("v: {speed: x}", f"v: {{speed: x{sensor}}}") + nuisance
+            experiment = experiment.replace("duration: 8", "duration: 8.1")
+            found = self.infer(experiment, "m.csv")
+            self.assert_right(found, ["k", "d"])
+            self.assertNotIn("v", " ".join(found.get("left_out", [])))
+            result = call("diagnose", self.folder / "experiment.yaml", self.folder / "m.csv", "--json")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            degrees = json.loads(result.stdout)["before"]["degrees"]
+            self.assertAlmostEqual(degrees, found["trust"]["degrees"], delta=1.5)
+
+    def test_a_sensor_that_no_feature_uses_needs_no_column(self):
+        known = EXPERIMENT.replace("  late: {bounds: [-0.05, 0.05], unit: s}\n", "").replace("DELAY", "0.02")
+        self.write("x_alone.csv", {"t": self.t, "x": self.x})
+        self.assert_right(self.infer(known.replace("outputs: [x, v]", "outputs: [x]"), "x_alone.csv"), ["k", "d"])
+
+    def test_a_table_without_a_header_has_columns_by_number(self):
+        known = EXPERIMENT.replace("  late: {bounds: [-0.05, 0.05], unit: s}\n", "").replace("DELAY", "0.02")
+        rows = [f"{t:.17g} {x:.17g} {v:.17g}" for t, x, v in zip(self.t, self.x, self.v)]
+        (self.folder / "numbers.txt").write_text("\n".join(rows) + "\n")
+        found = self.infer(known + "measurement: {time: 1, columns: {x: 2, v: 3}}\n", "numbers.txt")
+        self.assert_right(found, ["k", "d"])
 
     def window(self, start="0"):
         """Three seconds from an unknown state, the force in a file of its own whose clock is late by 0.02 s."""

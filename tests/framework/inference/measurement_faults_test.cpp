@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace twinmap {
 namespace {
@@ -113,6 +114,28 @@ TEST(MeasurementFaults, DegreesAreNotNamedOfAMetre) {
   VectorXd response = makeResponse(1.0, 1.2);
   response.head(kTimes) *= 57.29577951308232;
   EXPECT_EQ(explain(response), "y is 57.3 times too large: divide it by 57.3");
+}
+
+TEST(MeasurementFaults, ACounterThatWrapsIsNamedWithItsModulus) {
+  for (const double modulus : {0.8, 0.55}) {
+    VectorXd response = makeResponse(1.0, 1.2);
+    response.head(kTimes) = response.head(kTimes).unaryExpr(
+        [modulus](double y) { return y - modulus * std::round(y / modulus); });
+    const std::string text = modulus == 0.8 ? "0.8" : "0.55", half = modulus == 0.8 ? "0.4" : "0.275";
+    EXPECT_EQ(explain(response), "y jumps by " + text +
+                                     " m again and again, as a counter that wraps: give measurement.unwrap: "
+                                     "[y] and measurement.range: {y: [-" +
+                                     half + ", " + half + "]}");
+  }
+}
+
+TEST(MeasurementFaults, SeveralOutputsByOneFactorAreNamedTogether) {
+  EXPECT_EQ(explain(57.29577951308232 * makeResponse(1.0, 1.2)),
+            "y and theta are 57.3 times too large: divide each by 57.3");
+  const VectorXd large = 1000.0 * makeResponse(1.0, 1.2);
+  EXPECT_EQ(explainByFault(large, makeLayout(), calcMisfit(large), large.size(), calcMisfit, {"F"}),
+            "y and theta are 1000 times too large, as mm in the place of m: divide each by 1000; in a linear "
+            "machine the recording does not tell that from F being 1000 times too small: look which it is");
 }
 
 TEST(MeasurementFaults, NothingIsSaidOfAMisfitThatNoneOfThemExplains) {

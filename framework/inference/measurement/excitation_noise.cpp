@@ -1,0 +1,86 @@
+#include "framework/inference/measurement/excitation_noise.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// In the directions of the eigenvectors of G G'.
+struct RotatedFit {
+  VectorXd eigenvalues, residual;
+  MatrixXd jacobian;
+};
+
+struct Restricted {
+  double loss = 0.0, chi_square = 0.0;
+};
+
+Restricted calcRestricted(const RotatedFit& fit, double size) {
+  const VectorXd precisions = (1.0 + size * size * fit.eigenvalues.array().max(0.0)).inverse();
+  const MatrixXd weighted = precisions.asDiagonal() * fit.jacobian;
+  const Eigen::LDLT<MatrixXd> information(fit.jacobian.transpose() * weighted);
+  const VectorXd descent = weighted.transpose() * fit.residual;
+  Restricted restricted;
+  restricted.chi_square =
+      precisions.dot(fit.residual.cwiseAbs2()) - descent.dot(VectorXd(information.solve(descent)));
+  restricted.loss = restricted.chi_square - precisions.array().log().sum() +
+                    information.vectorD().array().max(1e-300).log().sum();
+  return restricted;
+}
+
+}  // namespace
+
+std::optional<InputNoise> findInputNoise(const VectorXd& residual, const MatrixXd& jacobian,
+                                         const MatrixXd& responses, double largest) {
+  constexpr double kSmallest = 1e-3, kStep = 1.15;  // of the largest; a seventh of a size is no matter
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(responses * responses.transpose());
+  if (!(eigen.values[eigen.values.size() - 1] > 0.0)) {
+    return std::nullopt;
+  }
+  const RotatedFit fit{eigen.values, eigen.vectors.transpose() * residual,
+                       eigen.vectors.transpose() * jacobian};
+  const Restricted none = calcRestricted(fit, 0.0);
+  InputNoise best{0.0, 0.0, none.chi_square};
+  for (double size = kSmallest * largest; size <= largest; size *= kStep) {
+    const Restricted one = calcRestricted(fit, size);
+    if (none.loss - one.loss > best.gain) {
+      best = {size, none.loss - one.loss, one.chi_square};
+    }
+  }
+  return best;
+}
+
+double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extractor,
+                     const Eigen::MatrixXd& responses, const SimulatorFit& fit) {
+  constexpr double kLargest = 30.0;  // more is another signal
+  constexpr double kNamed = 10.8;    // of chi-square of one degree, once in a thousand
+  constexpr double kFar = 3.3;       // standard deviations of chi-square, once in a thousand
+  const auto rows = static_cast<Eigen::Index>(local.features.size());
+  if (responses.cols() == 0 || local.residual.size() != rows) {
+    return 0.0;
+  }
+  Eigen::MatrixXd features = local.whitener->apply(extractor.extract(responses)(local.features, Eigen::all));
+  for (const NoiseReport& report : fit.noise) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto feature = static_cast<std::size_t>(local.features[static_cast<std::size_t>(i)]);
+      if (extractor.getInfos()[feature].output == report.found.output) {
+        local.residual[i] /= report.found.factor;
+        local.jacobian.row(i) /= report.found.factor;
+        features.row(i) /= report.found.factor;
+      }
+    }
+  }
+  const std::optional<InputNoise> noise = findInputNoise(local.residual, local.jacobian, features, kLargest);
+  const auto degrees = static_cast<double>(rows - local.jacobian.cols());
+  return noise && noise->gain > kNamed && noise->chi_square < degrees + kFar * std::sqrt(2.0 * degrees)
+             ? noise->size
+             : 0.0;
+}
+
+}  // namespace twinmap
