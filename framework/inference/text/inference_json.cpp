@@ -227,6 +227,16 @@ void addRecording(const InferredMeasurement& inferred, Json& json) {
   }
 }
 
+void addNuisance(const InferredMeasurement& inferred, Json& json) {
+  for (const NuisanceEstimate& one : listNuisance(inferred)) {
+    json["nuisance"][one.name] = {{"mean", one.mean},
+                                  {"sd", one.stddev},
+                                  {"lower", one.lower95},
+                                  {"upper", one.upper95},
+                                  {"unit", one.unit}};
+  }
+}
+
 /// The term that the model most likely lacks.
 void addMissing(const InferredMeasurement& inferred, Json& json) {
   if (inferred.missing) {
@@ -280,13 +290,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (estimate.isGiven()) {
     json["parameters"] = toJson(estimate, parameters);
   }
-  for (const NuisanceEstimate& one : listNuisance(inferred)) {
-    json["nuisance"][one.name] = {{"mean", one.mean},
-                                  {"sd", one.stddev},
-                                  {"lower", one.lower95},
-                                  {"upper", one.upper95},
-                                  {"unit", one.unit}};
-  }
+  addNuisance(inferred, json);
   if (inferred.quantities) {
     json["derived"] = toJson(deriveFrom(inferred.quantities.get(), estimate));
   }
