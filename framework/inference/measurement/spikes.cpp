@@ -66,6 +66,9 @@ std::vector<SpikedSample> findSpikesOf(VectorXd samples) {
     }
     samples[at] -= heights[at];
   }
+  spikes.erase(std::remove_if(spikes.begin(), spikes.end(),
+                              [least](const SpikedSample& spike) { return std::abs(spike.height) <= least; }),
+               spikes.end());  // what one beside them had made of them, until it was corrected
   return spikes;
 }
 

@@ -21,14 +21,14 @@ VectorXd draw(Index count, unsigned seed) {
 }
 
 /// What an impulse at each time does to an oscillator later.
-MatrixXd makeResponses() {
+MatrixXd makeImpulses() {
   return MatrixXd::NullaryExpr(kRows, kRows, [](Index i, Index j) {
     const auto lag = static_cast<double>(i - j);
     return i <= j ? 0.0 : std::exp(-0.02 * lag) * std::sin(0.2 * lag);
   });
 }
 
-MatrixXd makeJacobian() {
+MatrixXd makeWaves() {
   MatrixXd jacobian(kRows, 2);
   jacobian.col(0) = VectorXd::LinSpaced(kRows, 0.0, 6.0).array().sin();
   jacobian.col(1) = VectorXd::LinSpaced(kRows, 0.0, 9.0).array().cos();
@@ -36,7 +36,7 @@ MatrixXd makeJacobian() {
 }
 
 TEST(ExcitationNoise, IsFoundInItsSize) {
-  const MatrixXd responses = makeResponses(), jacobian = makeJacobian();
+  const MatrixXd responses = makeImpulses(), jacobian = makeWaves();
   const VectorXd residual =
       draw(kRows, 1) + 0.3 * responses * draw(kRows, 2) + jacobian * VectorXd::Constant(2, 0.4);
   const std::optional<InputNoise> found = findInputNoise(residual, jacobian, responses, 30.0);
@@ -49,10 +49,10 @@ TEST(ExcitationNoise, IsFoundInItsSize) {
 TEST(ExcitationNoise, IsNotFoundWhereThereIsNone) {
   int named = 0;
   for (unsigned seed = 10; seed < 30; ++seed) {
-    named += findInputNoise(draw(kRows, seed), makeJacobian(), makeResponses(), 30.0)->gain > 10.8 ? 1 : 0;
+    named += findInputNoise(draw(kRows, seed), makeWaves(), makeImpulses(), 30.0)->gain > 10.8 ? 1 : 0;
   }
   EXPECT_EQ(named, 0);
-  EXPECT_FALSE(findInputNoise(draw(kRows, 1), makeJacobian(), MatrixXd::Zero(kRows, 3), 30.0));
+  EXPECT_FALSE(findInputNoise(draw(kRows, 1), makeWaves(), MatrixXd::Zero(kRows, 3), 30.0));
 }
 
 }  // namespace

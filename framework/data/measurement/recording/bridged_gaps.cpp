@@ -19,10 +19,13 @@ using Eigen::VectorXd;
 
 constexpr Index kFewest = 10;  // stretches: the size of what they err by is known to a quarter
 
-/// So many samples lost after number `before`.
+/// What is not there after sample number `before`.
 struct Gap {
-  Index before = 0, lost = 0;
-  bool is_late = false;  ///< the next one of a held signal: its value was there when it was due
+  Index before = 0;
+  VectorXd due;          ///< when samples were due, s
+  bool is_late = false;  ///< the next one of a held signal, due last: its value was there when it was due
+
+  Index countLost() const { return due.size() - (is_late ? 1 : 0); }
 };
 
 class Signal {
@@ -40,28 +43,25 @@ class Signal {
   double getChange(Index from, Index to) const { return values[to] - values[from]; }
 
   std::vector<Gap> listGaps(double begin, double end) const {
-    constexpr double kLost = 1.75;  // steps; a late sample's is shorter than that over one that was lost
-    constexpr double kLate = 1.1;   // of a held value that changes; stamps that jitter by less are usual
     std::vector<Gap> gaps;
     for (Index i = 0; i + 1 < times.size(); ++i) {
-      const double steps = (times[i + 1] - times[i]) / step_;
-      const bool changes = isHeld() && getChange(i, i + 1) != 0.0;
-      if (times[i + 1] > begin && times[i] < end && steps > (changes ? kLate : kLongest)) {
-        gaps.push_back(
-            {i, std::max<Index>(1, static_cast<Index>(std::lround(steps)) - 1), isHeld() && steps < kLost});
+      const bool may_change = isHeld() && getChange(i, i + 1) != 0.0;
+      const bool is_long = times[i + 1] - times[i] > kLongest * step_;
+      if (times[i + 1] > begin && times[i] < end && (is_long || may_change)) {
+        Gap gap = makeGap(i);
+        if (gap.due.size() > 0) {
+          gaps.push_back(std::move(gap));
+        }
       }
     }
     return gaps;
   }
 
-  /// The time of lost sample number k, from 1 on.
-  double calcTime(const Gap& gap, Index k) const {
-    return times[gap.before] + static_cast<double>(k) * step_;
-  }
-
-  VectorXd bridge(const VectorXd& at, const Gap& gap) const {
-    const Index next = gap.before + 1;
-    return gap.is_late ? VectorXd(VectorXd::Constant(gap.lost, values[next])) : bridge(at, gap.before, next);
+  VectorXd bridge(const Gap& gap) const {
+    const Index next = gap.before + 1, lost = gap.countLost();
+    VectorXd values_due = VectorXd::Constant(gap.due.size(), values[next]);
+    values_due.head(lost) = bridge(gap.due.head(lost), gap.before, next);
+    return values_due;
   }
 
   /// What stands in the place of samples, the next one that is there being number `next`.
@@ -94,6 +94,36 @@ class Signal {
   const VectorXd times, values;
 
  private:
+  static constexpr double kJitter = 0.02;  // of a step: by so much a held value changes late unnoticed
+
+  Gap makeGap(Index before) const {
+    const double from = times[before] + kJitter * step_, to = times[before + 1] - kJitter * step_;
+    const double tick = findTick(before);
+    std::vector<double> due;
+    for (double n = std::ceil((from - tick) / step_); tick + n * step_ < to; n += 1.0) {
+      due.push_back(tick + n * step_);
+    }
+    const bool is_late = !due.empty() && times[before + 1] - due.back() < (1.0 - kJitter) * step_;
+    return {before, Eigen::Map<const VectorXd>(due.data(), static_cast<Index>(due.size())),
+            isHeld() && is_late};
+  }
+
+  /// A time at which a sample was due, so that they are due in whole steps from there: that of the sample
+  /// nearby with which most others keep time; without a majority that of this one.
+  double findTick(Index near) const {
+    constexpr Index kReach = 8;
+    const Index first = std::max<Index>(0, near - kReach),
+                last = std::min(times.size() - 1, near + 1 + kReach);
+    Index best = near, most = 0;
+    for (Index i = first; i <= last; ++i) {
+      const VectorXd steps = (times.segment(first, last - first + 1).array() - times[i]) / step_;
+      const Index keep = ((steps.array() - steps.array().round()).abs() < kJitter).count();
+      best = keep > most ? i : best;
+      most = std::max(most, keep);
+    }
+    return times[2 * most > last - first + 1 ? best : near];
+  }
+
   const TableInterpolation interpolation_;
   const double step_;
 };
@@ -102,19 +132,20 @@ class Signal {
 MatrixXd listErrors(const Signal& signal, const Gap& gap, Index reach) {
   const double change = signal.getChange(gap.before, gap.before + 1);
   const Index from = std::max<Index>(0, gap.before - reach);
-  const Index to = std::min(signal.times.size() - gap.lost - 1, gap.before + reach);
+  const Index lost = gap.countLost();
+  const Index to = std::min(signal.times.size() - lost - 1, gap.before + reach);
   std::vector<VectorXd> rows;
   for (Index i = from; i < to; ++i) {
-    const Index next = i + gap.lost + 1;
+    const Index next = i + lost + 1;
     const double own = signal.getChange(i, next);
     if (!signal.isWhole(i, next) || (signal.isHeld() && (own == 0.0) != (change == 0.0))) {
       continue;
     }
-    const VectorXd errors = signal.values.segment(i + 1, gap.lost) -
-                            signal.bridge(signal.times.segment(i + 1, gap.lost), i, next);
+    const VectorXd errors =
+        signal.values.segment(i + 1, lost) - signal.bridge(signal.times.segment(i + 1, lost), i, next);
     rows.emplace_back(signal.isHeld() && change != 0.0 ? VectorXd(errors * (change / own)) : errors);
   }
-  MatrixXd listed(static_cast<Index>(rows.size()), gap.lost);
+  MatrixXd listed(static_cast<Index>(rows.size()), lost);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     listed.row(static_cast<Index>(i)) = rows[i].transpose();
   }
@@ -123,8 +154,8 @@ MatrixXd listErrors(const Signal& signal, const Gap& gap, Index reach) {
 
 Index countStretches(const Signal& signal, const Gap& gap) {
   Index count = 0;
-  for (Index i = 0; i + gap.lost + 1 < signal.times.size(); ++i) {
-    count += signal.isWhole(i, i + gap.lost + 1) ? 1 : 0;
+  for (Index i = 0; i + gap.countLost() + 1 < signal.times.size(); ++i) {
+    count += signal.isWhole(i, i + gap.countLost() + 1) ? 1 : 0;
   }
   return count;
 }
@@ -132,29 +163,39 @@ Index countStretches(const Signal& signal, const Gap& gap) {
 /// Of a value that changes once, at any of the times alike.
 MatrixXd calcSingleChange(const Signal& signal, const Gap& gap) {
   const double change = signal.getChange(gap.before, gap.before + 1);
-  const auto all = static_cast<double>(gap.lost + 1);
-  return MatrixXd::NullaryExpr(gap.lost, gap.lost, [&](Index i, Index j) {
+  const Index lost = gap.countLost();
+  const auto all = static_cast<double>(lost + 1);
+  return MatrixXd::NullaryExpr(lost, lost, [&](Index i, Index j) {
     const auto first = static_cast<double>(std::min(i, j) + 1),
                last = static_cast<double>(std::max(i, j) + 1);
     return change * change * first / all * (1.0 - last / all);
   });
 }
 
-/// The covariance of what the bridge of a gap errs by.
-MatrixXd calcCovariance(const Signal& signal, const Gap& gap) {
-  if (gap.is_late) {
-    return calcSingleChange(signal, gap);
-  }
+/// The covariance of what the bridge of lost samples errs by.
+MatrixXd calcLostCovariance(const Signal& signal, const Gap& gap) {
   constexpr Index kNear = 50;  // samples: a signal's spectrum changes
-  MatrixXd errors = listErrors(signal, gap, std::max(kNear, kFewest * (gap.lost + 1)));
+  const Index lost = gap.countLost();
+  MatrixXd errors = listErrors(signal, gap, std::max(kNear, kFewest * (lost + 1)));
   if (errors.rows() < kFewest) {
     errors = listErrors(signal, gap, signal.times.size());
   }
   if (errors.rows() < kFewest && signal.isHeld()) {
     return calcSingleChange(signal, gap);
   }
-  return errors.rows() == 0 ? MatrixXd(MatrixXd::Zero(gap.lost, gap.lost))
+  return errors.rows() == 0 ? MatrixXd(MatrixXd::Zero(lost, lost))
                             : MatrixXd(errors.transpose() * errors / static_cast<double>(errors.rows()));
+}
+
+/// The same of all that were due: a late one's value may have changed before it came or when it was due.
+MatrixXd calcCovariance(const Signal& signal, const Gap& gap) {
+  const double change = signal.getChange(gap.before, gap.before + 1);
+  MatrixXd covariance = MatrixXd::Zero(gap.due.size(), gap.due.size());
+  covariance(gap.due.size() - 1, gap.due.size() - 1) = 0.25 * change * change;
+  if (const Index lost = gap.countLost(); lost > 0) {
+    covariance.topLeftCorner(lost, lost) = calcLostCovariance(signal, gap);
+  }
+  return covariance;
 }
 
 void addUnknown(TableSpec& table, std::size_t first, const MatrixXd& covariance) {
@@ -198,15 +239,14 @@ void bridgeGaps(TableSpec& table, const std::string& source, double start, doubl
   std::size_t added = 0;
   for (const Gap& gap : gaps) {
     requireBridgeable(signal, gap, table.measured->max_gap, source, start);
-    const VectorXd times =
-        VectorXd::NullaryExpr(gap.lost, [&](Index k) { return signal.calcTime(gap, k + 1); });
-    const VectorXd values = signal.bridge(times, gap);
+    const VectorXd& times = gap.due;
+    const VectorXd values = signal.bridge(gap);
     const auto at = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(gap.before) + 1 + added);
     table.times.insert(table.times.begin() + at, times.begin(), times.end());
     table.values.insert(table.values.begin() + at, values.begin(), values.end());
     addUnknown(table, static_cast<std::size_t>(at), calcCovariance(signal, gap));
-    added += static_cast<std::size_t>(gap.lost);
-    lost += gap.lost;
+    added += static_cast<std::size_t>(times.size());
+    lost += times.size();
     longest = std::max(longest, signal.times[gap.before + 1] - signal.times[gap.before]);
   }
   if (!gaps.empty()) {
