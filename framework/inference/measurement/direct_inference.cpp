@@ -17,6 +17,7 @@
 #include "framework/inference/measurement/excitation_noise.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
 #include "framework/inference/measurement/spikes.hpp"
+#include "framework/inference/measurement/supposed_input.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/models/model_remarks.hpp"
@@ -92,13 +93,6 @@ std::vector<std::string> listMeasured(const ModelSpec& model) {
     }
   }
   return names;
-}
-
-/// Noise of unknown size is stated as that of another: what is common to its rows is in units of that.
-void divideByNoise(const ResponseLayout& layout, const FoundNoise& found, Eigen::MatrixXd& common) {
-  if (found.size_was_inferred) {
-    common.middleRows(layout.getRow(found.output, 0), layout.times.size()) /= found.factor;
-  }
 }
 
 /// One measurement is inferred at a time: all threads simulate for it.
@@ -187,8 +181,15 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   AvailableFeatures found = read;
   std::optional<SimulatorRefiner> own;  // with the noise that the measurement and its excitation state
   StatedNoise stated = found.stated;
-  stated.common = findCommonNoise(found, known);
-  if (stated.isGiven() || stated.common.cols() > 0) {
+  if (std::optional<SupposedInput> input = supposeInput(reader_, found, known, options_)) {
+    stated.common = input->common;
+    found.features += reader_.getExtractor().extract(input->offset);
+    found.response += input->offset;
+    const ResponseLayout& layout = reader_.getLayout();
+    own.emplace(input->experiment, layout,
+                shareAmongThreads(makeTrustedSimulator(input->experiment.model, layout.times, layout.modes)),
+                stated);
+  } else if (stated.isGiven()) {
     own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(), stated);
   }
   const SimulatorRefiner& simulator = own ? *own : simulator_;
@@ -246,37 +247,6 @@ void DirectInference::tryWithoutSpikes(const SimulatorRefiner& simulator, Availa
     outliers.insert(outliers.end(), spiked.said.begin(), spiked.said.end());
     found = std::move(without);
   }
-}
-
-Eigen::MatrixXd DirectInference::findCommonNoise(const AvailableFeatures& found,
-                                                 const Eigen::VectorXd& known) const {
-  constexpr int kTimes = 2;  // where it moves the fit by much, the second time less
-  const ModelSpec& model = reader_.getExperiment().model;
-  if (!hasUnknownExcitation(model) || !simulator_.findFailure(known).empty()) {
-    return {};
-  }
-  const SearchStage stage("what the unknown of the excitation does");
-  SimulatorPosteriorOptions options = options_;
-  options.draws = std::min(options.draws, kMinPosteriorDraws);
-  StatedNoise stated = found.stated;
-  Eigen::MatrixXd given;
-  for (int i = 0; i < kTimes; ++i) {
-    const SimulatorRefiner simulator(reader_.getExperiment(), reader_.getLayout(),
-                                     simulator_.getSimulator().clone(), stated);
-    const PosteriorEstimate fitted = simulator.sampleAsStated(
-        found.features, known, simulator.describeNoise(found.clipped), given, options);
-    if (!fitted.fit || !fitted.fit->isSimulated()) {
-      return {};
-    }
-    given = fitted.fit->best;
-    Eigen::VectorXd point(given.rows() + known.size());
-    point << given, known;
-    stated.common = calcUnknownResponses(model, reader_.getLayout(), point);
-    for (const NoiseReport& report : fitted.fit->noise) {
-      divideByNoise(reader_.getLayout(), report.found, stated.common);
-    }
-  }
-  return stated.common;
 }
 
 std::vector<std::string> DirectInference::describeInputNoise(const SimulatorRefiner& simulator,

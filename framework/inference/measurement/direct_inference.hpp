@@ -62,10 +62,6 @@ class DirectInference final : public MeasurementInference {
   void tryWithoutSpikes(const SimulatorRefiner& simulator, AvailableFeatures& found,
                         const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
 
-  /// What rows have in common, at the best fit without it: of what is not known of the excitation
-  /// (calcUnknownResponses); without columns where all is known.
-  Eigen::MatrixXd findCommonNoise(const AvailableFeatures& found, const Eigen::VectorXd& known) const;
-
   /// What noise of a measured excitation, where none is stated, may have to do with what is left, a phrase
   /// for each signal of which it is significant (once in a thousand) and that would leave nothing else.
   std::vector<std::string> describeInputNoise(const SimulatorRefiner& simulator,

@@ -21,7 +21,8 @@ struct SpikedSample {
 /// measures. O(samples * spikes).
 std::vector<SpikedSample> findSpikes(const Eigen::VectorXd& measured, const ResponseLayout& layout);
 
-/// The features that are these samples (their numbers), their rows, and what is said of each, "x(1.6 s) (off by 0.3 m)".
+/// The features that are these samples (their numbers), their rows, and what is said of each, "x(1.6 s) (off
+/// by 0.3 m)".
 struct SpikedFeatures {
   std::vector<Eigen::Index> features, rows;
   std::vector<std::string> said;

@@ -31,6 +31,12 @@ void addNoise(const TableSpec& table, std::vector<TableUnknown>& changes) {
   }
 }
 
+void addTimes(const TableUnknown& change, double times, std::vector<double>& values) {
+  for (std::size_t i = 0; i < change.changes.size(); ++i) {
+    values[change.first + i] += times * change.changes[i];
+  }
+}
+
 std::vector<UnknownTable> listUnknown(const ModelSpec& model) {
   std::vector<UnknownTable> all;
   for (std::size_t s = 0; s < model.excitation.size(); ++s) {
@@ -67,28 +73,38 @@ bool hasUnknownExcitation(const ModelSpec& model) {
 }
 
 MatrixXd calcUnknownResponses(const ModelSpec& model, const ResponseLayout& layout, const VectorXd& point) {
-  std::vector<VectorXd> columns;
+  constexpr double kStep = 0.1;  // standard deviations: about a point where responses bend
   const std::optional<VectorXd> usual = simulate(model, layout, point);
+  std::vector<VectorXd> columns;
   ModelSpec changed = model;
   for (const UnknownTable& unknown : listUnknown(model)) {
     const std::vector<double> values = model.excitation[unknown.signal].tables[unknown.table].values;
     std::vector<double>& own = changed.excitation[unknown.signal].tables[unknown.table].values;
     for (const TableUnknown& change : unknown.changes) {
-      for (std::size_t i = 0; i < change.changes.size(); ++i) {
-        own[change.first + i] += change.changes[i];
-      }
+      addTimes(change, kStep, own);
       const std::optional<VectorXd> response = usual ? simulate(changed, layout, point) : std::nullopt;
-      if (response) {
-        columns.emplace_back(*response - *usual);
-      }
+      columns.emplace_back(response ? VectorXd((*response - *usual) / kStep)
+                                    : VectorXd(VectorXd::Zero(layout.getRowCount())));
       own = values;
     }
   }
-  MatrixXd responses(layout.getRowCount(), static_cast<Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    responses.col(static_cast<Index>(i)) = columns[i];
+  MatrixXd responses(layout.getRowCount(), usual ? static_cast<Index>(columns.size()) : 0);
+  for (Index i = 0; i < responses.cols(); ++i) {
+    responses.col(i) = columns[static_cast<std::size_t>(i)];
   }
   return responses;
+}
+
+ModelSpec moveUnknown(ModelSpec model, const VectorXd& moves) {
+  Index next = 0;
+  for (const UnknownTable& unknown : listUnknown(model)) {
+    std::vector<double>& own = model.excitation[unknown.signal].tables[unknown.table].values;
+    for (const TableUnknown& change : unknown.changes) {
+      addTimes(change, moves[next], own);
+      ++next;
+    }
+  }
+  return model;
 }
 
 std::optional<ModelSpec> supposeNoise(const ModelSpec& model, std::size_t signal, double share,

@@ -16,10 +16,13 @@ bool hasUnknownExcitation(const ModelSpec& model);
 
 /// What one standard deviation of each adds to the response at a point of all parameters: rows x r, so that
 /// its covariance is their product with their transpose, to first order. Noise counts in up to 500 stretches
-/// of samples, each as one of their mean: a response does not tell what is faster. Columns are left out where
-/// nothing can be simulated. Cost: r + 1 simulations.
+/// of samples, each as one of their mean: a response does not tell what is faster. Columns are
+/// 0 where nothing can be simulated, without where nothing can be at all. Cost: r + 1 simulations.
 Eigen::MatrixXd calcUnknownResponses(const ModelSpec& model, const ResponseLayout& layout,
                                      const Eigen::VectorXd& point);
+
+/// The model with its excitation moved by so many standard deviations of each.
+ModelSpec moveUnknown(ModelSpec model, const Eigen::VectorXd& moves);
 
 /// The model with so much noise of one of its measured signals, a share of its root mean square, and all else
 /// of the excitation known; none where it has no such signal, or one whose noise is stated. size: set to that

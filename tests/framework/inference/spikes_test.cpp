@@ -30,11 +30,11 @@ TEST(Spikes, AreThoseThatWereAdded) {
   VectorXd response = makeSmooth();
   EXPECT_TRUE(findSpikes(response, makeTwoSensors()).empty());
   response[40] += 0.05;
-  response[41] -= 0.07;
+  response[60] -= 0.07;
   response[kSpikedTimes + 100] += 0.3;
   const std::vector<SpikedSample> found = findSpikes(response, makeTwoSensors());
   ASSERT_EQ(found.size(), 3U);
-  EXPECT_EQ(found[0].row, 41);
+  EXPECT_EQ(found[0].row, 60);
   EXPECT_EQ(found[1].row, 40);
   EXPECT_EQ(found[2].row, kSpikedTimes + 100);
   EXPECT_NEAR(found[2].height, 0.3, 5e-3);

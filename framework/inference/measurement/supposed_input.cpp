@@ -1,0 +1,140 @@
+#include "framework/inference/measurement/supposed_input.hpp"
+
+#include <algorithm>
+
+#include "framework/base/log/search_stage.hpp"
+#include "framework/data/measurement/recording/recorded_times.hpp"
+#include "framework/inference/measurement/unknown_excitation.hpp"
+#include "framework/simulation/team_simulator.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::unique_ptr<Simulator> makeTrustedTeam(const ExperimentSpec& experiment, const ResponseLayout& layout) {
+  return shareAmongThreads(makeTrustedSimulator(experiment.model, layout.times, layout.modes));
+}
+
+/// Noise of unknown size is stated as that of another: rows are in units of that.
+void divideByNoise(const ResponseLayout& layout, const std::vector<NoiseReport>& noise, MatrixXd& rows) {
+  for (const NoiseReport& report : noise) {
+    if (report.found.size_was_inferred) {
+      rows.middleRows(layout.getRow(report.found.output, 0), layout.times.size()) /= report.found.factor;
+    }
+  }
+}
+
+/// The likeliest m of r = G n + noise of unit variance, n of unit variance as well.
+VectorXd calcLikeliest(const MatrixXd& responses, const VectorXd& residual) {
+  const Index r = responses.cols();
+  return linalg::solvePositiveDefinite(MatrixXd::Identity(r, r) + responses.transpose() * responses,
+                                       responses.transpose() * residual);
+}
+
+/// One measurement, from one supposition to the next.
+class Supposing {
+ public:
+  Supposing(const MeasurementReader& reader, const AvailableFeatures& found, const VectorXd& known,
+            const SimulatorPosteriorOptions& options)
+      : reader_(reader),
+        found_(found),
+        known_(known),
+        options_(options),
+        input_{reader.getExperiment(), {}, {}} {
+    input_.offset = VectorXd::Zero(reader.getLayout().getRowCount());
+  }
+
+  /// False where nothing can be simulated.
+  bool improve() {
+    const ResponseLayout& layout = reader_.getLayout();
+    StatedNoise stated = found_.stated;
+    stated.common = input_.common;
+    const SimulatorSampler sampler(input_.experiment, layout, makeTrustedTeam(input_.experiment, layout),
+                                   stated);
+    const VectorXd features = found_.features + reader_.getExtractor().extract(input_.offset);
+    const PosteriorEstimate fitted =
+        sampler.sampleAsStated(features, known_, sampler.describeNoise(found_.clipped), given_, options_);
+    if (!fitted.fit || !fitted.fit->isSimulated()) {
+      return false;
+    }
+    given_ = fitted.fit->best;
+    VectorXd point(given_.rows() + known_.size());
+    point << given_, known_;
+    const MatrixXd responses = calcUnknownResponses(input_.experiment.model, layout, point);
+    input_.common = responses;
+    divideByNoise(layout, fitted.fit->noise, input_.common);
+    return responses.cols() > 0 && move(responses, *fitted.fit);
+  }
+
+  SupposedInput take() { return std::move(input_); }
+
+ private:
+  /// Moves the excitation to the likeliest beside these parameters.
+  bool move(const MatrixXd& responses, const SimulatorFit& fit) {
+    const ResponseLayout& layout = reader_.getLayout();
+    const SimulatorSampler plain(input_.experiment, layout, makeTrustedTeam(input_.experiment, layout),
+                                 found_.stated);
+    std::optional<LinearizedMeasurement> local = plain.linearize(found_.features, known_, given_);
+    if (!local || !local->whitener || local->residual.size() != static_cast<Index>(local->features.size())) {
+      return false;
+    }
+    MatrixXd rows(layout.getRowCount(), responses.cols() + 1);
+    rows << responses, VectorXd::Zero(rows.rows());
+    MatrixXd own = local->whitener->apply(reader_.getExtractor().extract(rows)(local->features, Eigen::all));
+    own.rightCols(1) = local->residual;
+    divideRows(*local, fit, own);
+    const MatrixXd effects = own.leftCols(responses.cols());
+    if (moved_.size() == 0) {
+      moved_ = VectorXd::Zero(responses.cols());
+    }
+    const VectorXd likeliest = calcLikeliest(effects, own.col(responses.cols()) + effects * moved_);
+    input_.experiment.model = moveUnknown(reader_.getExperiment().model, likeliest);
+    moved_ = likeliest;
+    input_.offset = responses * likeliest;
+    return true;
+  }
+
+  void divideRows(const LinearizedMeasurement& local, const SimulatorFit& fit, MatrixXd& rows) const {
+    for (const NoiseReport& report : fit.noise) {
+      for (Index i = 0; i < rows.rows(); ++i) {
+        const auto feature = static_cast<std::size_t>(local.features[static_cast<std::size_t>(i)]);
+        if (reader_.getExtractor().getInfos()[feature].output == report.found.output) {
+          rows.row(i) /= report.found.factor;
+        }
+      }
+    }
+  }
+
+  const MeasurementReader& reader_;
+  const AvailableFeatures& found_;
+  const VectorXd& known_;
+  const SimulatorPosteriorOptions& options_;
+  SupposedInput input_;
+  MatrixXd given_;
+  VectorXd moved_;
+};
+
+}  // namespace
+
+std::optional<SupposedInput> supposeInput(const MeasurementReader& reader, const AvailableFeatures& found,
+                                          const VectorXd& known, SimulatorPosteriorOptions options) {
+  constexpr int kTimes = 3;  // what the first moves by much, the others move by little
+  if (!hasUnknownExcitation(reader.getExperiment().model) || !areSamples(reader.getExperiment().features)) {
+    return std::nullopt;
+  }
+  const SearchStage stage("what the unknown of the excitation does");
+  options.draws = std::min(options.draws, kMinPosteriorDraws);
+  Supposing supposing(reader, found, known, options);
+  for (int i = 0; i < kTimes; ++i) {
+    if (!supposing.improve()) {
+      return std::nullopt;
+    }
+  }
+  return supposing.take();
+}
+
+}  // namespace twinmap
