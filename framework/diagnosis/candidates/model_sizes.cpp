@@ -42,6 +42,11 @@ ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<Force
     observeMotion(coordinate, observed.outputs);
   }
   observed.outputs.insert(observed.outputs.end(), model.outputs.begin(), model.outputs.end());
+  for (OutputSpec& output : observed.outputs) {
+    if (output.sensor) {
+      output.sensor->delay.text.clear();  // a size has none, and an early one would look behind the end
+    }
+  }
   for (const SignalSpec& signal : model.excitation) {
     observeForce(signal.name.text, {signal.name.text, {}}, observed.outputs);
   }
