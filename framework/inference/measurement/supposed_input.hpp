@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "framework/inference/measurement/measurement_reader.hpp"
+#include "framework/inference/measurement_reader.hpp"
 #include "framework/inference/simulator_sampler.hpp"
 
 namespace twinmap {
