@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "framework/data/measurement/bridged_gaps.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/measurement_start.hpp"
-#include "framework/data/measurement/recording/bridged_gaps.hpp"
-#include "framework/data/measurement/recording/recording.hpp"
+#include "framework/data/measurement/recording.hpp"
 #include "framework/data/measurement/row_order.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

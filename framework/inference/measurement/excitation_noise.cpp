@@ -1,6 +1,6 @@
 #include "framework/inference/measurement/excitation_noise.hpp"
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "kernels/linalg/decompositions.hpp"
@@ -24,13 +24,15 @@ struct Restricted {
 Restricted calcRestricted(const RotatedFit& fit, double size) {
   const VectorXd precisions = (1.0 + size * size * fit.eigenvalues.array().max(0.0)).inverse();
   const MatrixXd weighted = precisions.asDiagonal() * fit.jacobian;
-  const Eigen::LDLT<MatrixXd> information(fit.jacobian.transpose() * weighted);
-  const VectorXd descent = weighted.transpose() * fit.residual;
+  constexpr double kSingular = 1e-12;  // of the largest: what nothing determines explains nothing
+  const linalg::SymmetricEigen information = linalg::calcSymmetricEigen(fit.jacobian.transpose() * weighted);
+  const double largest = information.values[information.values.size() - 1];
+  const VectorXd values = information.values.cwiseMax(std::max(kSingular * largest, 1e-300));
+  const VectorXd descent = information.vectors.transpose() * (weighted.transpose() * fit.residual);
   Restricted restricted;
   restricted.chi_square =
-      precisions.dot(fit.residual.cwiseAbs2()) - descent.dot(VectorXd(information.solve(descent)));
-  restricted.loss = restricted.chi_square - precisions.array().log().sum() +
-                    information.vectorD().array().max(1e-300).log().sum();
+      precisions.dot(fit.residual.cwiseAbs2()) - descent.cwiseAbs2().cwiseQuotient(values).sum();
+  restricted.loss = restricted.chi_square - precisions.array().log().sum() + values.array().log().sum();
   return restricted;
 }
 

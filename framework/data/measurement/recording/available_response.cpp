@@ -13,8 +13,8 @@
 #include "framework/data/measurement/lagrange.hpp"
 #include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/measurement.hpp"
+#include "framework/data/measurement/recording.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
-#include "framework/data/measurement/recording/recording.hpp"
 #include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "framework/data/measurement/recording/recording.hpp"
+#include "framework/data/measurement/recording.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "kernels/linalg/autocorrelation.hpp"
 

@@ -1,5 +1,5 @@
 // The signals are closed forms, of which samples are taken away: what the bridge errs by is known.
-#include "framework/data/measurement/recording/bridged_gaps.hpp"
+#include "framework/data/measurement/bridged_gaps.hpp"
 
 #include <gtest/gtest.h>
 

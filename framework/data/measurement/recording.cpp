@@ -1,4 +1,4 @@
-#include "framework/data/measurement/recording/recording.hpp"
+#include "framework/data/measurement/recording.hpp"
 
 #include <fmt/core.h>
 

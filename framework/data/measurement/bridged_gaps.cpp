@@ -1,4 +1,4 @@
-#include "framework/data/measurement/recording/bridged_gaps.hpp"
+#include "framework/data/measurement/bridged_gaps.hpp"
 
 #include <fmt/core.h>
 
