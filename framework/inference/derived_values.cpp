@@ -39,11 +39,8 @@ std::shared_ptr<const DerivedQuantities> makeDerivedQuantities(const ExperimentS
   return experiment.derived.empty() ? nullptr : std::make_shared<const DerivedQuantities>(experiment);
 }
 
-std::vector<NuisanceEstimate> listNuisance(const InferredMeasurement& inferred) {
-  const PosteriorEstimate* posterior =
-      inferred.posterior && inferred.posterior->fit && inferred.posterior->isReliable() ? &*inferred.posterior
-                                                                                        : nullptr;
-  if (posterior == nullptr) {
+std::vector<NuisanceEstimate> listNuisance(const std::optional<PosteriorEstimate>& posterior) {
+  if (!posterior || !posterior->fit || !posterior->isReliable()) {
     return {};
   }
   const BoundedDraws& draws = posterior->estimate.draws;

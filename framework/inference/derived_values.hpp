@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/experiment/experiment_spec.hpp"
+#include "framework/inference/posterior_estimate.hpp"
 
 namespace twinmap {
 
@@ -29,6 +32,6 @@ struct NuisanceEstimate {
 
 /// Of all nuisance parameters, from the draws of the simulator's posterior where that is reliable and has
 /// them; else empty.
-std::vector<NuisanceEstimate> listNuisance(const InferredMeasurement& inferred);
+std::vector<NuisanceEstimate> listNuisance(const std::optional<PosteriorEstimate>& posterior);
 
 }  // namespace twinmap

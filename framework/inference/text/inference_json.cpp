@@ -228,7 +228,7 @@ void addRecording(const InferredMeasurement& inferred, Json& json) {
 }
 
 void addNuisance(const InferredMeasurement& inferred, Json& json) {
-  for (const NuisanceEstimate& one : listNuisance(inferred)) {
+  for (const NuisanceEstimate& one : listNuisance(inferred.posterior)) {
     json["nuisance"][one.name] = {{"mean", one.mean},
                                   {"sd", one.stddev},
                                   {"lower", one.lower95},

@@ -203,7 +203,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text += describeRefined(*inferred.refined);
   }
   if (estimate.isGiven()) {
-    text += makeTable(estimate, parameters, quantities, listNuisance(inferred));
+    text += makeTable(estimate, parameters, quantities, listNuisance(inferred.posterior));
   }
   for (const std::string& advice : adviseOnRidges(inferred.ridges, parameters)) {
     text += "  " + advice + "\n";

@@ -127,7 +127,7 @@ std::string makeParameterTable(const MeasurementReader& reader, const Replay& re
 
 std::string makeNuisanceTable(const ModelSpec& model, const Replay& replay) {
   constexpr int kStddevDigits = 3;
-  const std::vector<NuisanceEstimate> known = listNuisance(replay.inferred);
+  const std::vector<NuisanceEstimate> known = listNuisance(replay.inferred.posterior);
   std::vector<Cells> rows;
   for (std::size_t n = 0; n < model.nuisance.size(); ++n) {
     const auto i = static_cast<Index>(model.parameters.size() + n);
