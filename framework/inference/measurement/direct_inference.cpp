@@ -14,6 +14,7 @@
 #include "framework/experiment/check/unused_parameters.hpp"
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/derived_values.hpp"
+#include "framework/inference/measurement/alternation.hpp"
 #include "framework/inference/measurement/excitation_noise.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
 #include "framework/inference/measurement/spikes.hpp"
@@ -195,10 +196,12 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   const SimulatorRefiner& simulator = own ? *own : simulator_;
   InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);
   tryWithoutSpikes(simulator, found, known, inferred);
+  tryWithoutAlternation(simulator, found, known, inferred);
   inferred.source = table.source;
   inferred.start = reader_.getStart(table, start);
   inferred.left_out = found.remarks;
-  inferred.remarks = describeBridged(reader_.getExperiment().model);
+  const std::vector<std::string> bridged = describeBridged(reader_.getExperiment().model);
+  inferred.remarks.insert(inferred.remarks.end(), bridged.begin(), bridged.end());
   if (tryClock(found, known, inferred)) {
     return inferred;
   }
@@ -246,6 +249,27 @@ void DirectInference::tryWithoutSpikes(const SimulatorRefiner& simulator, Availa
     std::vector<std::string>& outliers = inferred.posterior->fit->outliers;
     outliers.insert(outliers.end(), spiked.said.begin(), spiked.said.end());
     found = std::move(without);
+  }
+}
+
+void DirectInference::tryWithoutAlternation(const SimulatorRefiner& simulator, AvailableFeatures& found,
+                                            const Eigen::VectorXd& known,
+                                            InferredMeasurement& inferred) const {
+  const std::optional<SimulatorFit>& fit = inferred.posterior->fit;
+  if (!fit || !fit->isSimulated() || fit->isPlausible() || !areSamples(reader_.getExperiment().features)) {
+    return;
+  }
+  Alternation alternation = findAlternation(found.response, reader_.getLayout());
+  if (alternation.said.empty()) {
+    return;
+  }
+  const Eigen::VectorXd features = found.features + reader_.getExtractor().extract(alternation.shift);
+  InferredMeasurement other = infer(simulator, features, known, found.clipped);
+  if (other.posterior->fit && other.posterior->fit->isPlausible()) {
+    inferred = std::move(other);
+    inferred.remarks = std::move(alternation.said);
+    found.features = features;
+    found.response += alternation.shift;
   }
 }
 

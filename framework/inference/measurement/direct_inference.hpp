@@ -62,6 +62,11 @@ class DirectInference final : public MeasurementInference {
   void tryWithoutSpikes(const SimulatorRefiner& simulator, AvailableFeatures& found,
                         const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
 
+  /// Where a measurement is not explained: the same without what every other sample is off by
+  /// (findAlternation), if that explains it.
+  void tryWithoutAlternation(const SimulatorRefiner& simulator, AvailableFeatures& found,
+                             const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
+
   /// What noise of a measured excitation, where none is stated, may have to do with what is left, a phrase
   /// for each signal of which it is significant (once in a thousand) and that would leave nothing else.
   std::vector<std::string> describeInputNoise(const SimulatorRefiner& simulator,
