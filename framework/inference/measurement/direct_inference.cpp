@@ -206,7 +206,7 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
     return inferred;
   }
   inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
-  inferred.against = listAgainst(inferred);
+  inferred.against = listAgainst(found, known, inferred);
   if (inferred.fault.empty()) {
     const std::vector<std::string> noisy = describeInputNoise(simulator, found, known, *inferred.posterior);
     inferred.remarks.insert(inferred.remarks.end(), noisy.begin(), noisy.end());
@@ -214,13 +214,60 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   return inferred;
 }
 
-std::vector<std::string> DirectInference::listAgainst(const InferredMeasurement& inferred) const {
+std::vector<std::string> DirectInference::listAgainst(const AvailableFeatures& found,
+                                                      const Eigen::VectorXd& known,
+                                                      const InferredMeasurement& inferred) const {
   const std::string status = listStatuses(inferred).front();
   const bool explains_nothing = status == getNotice(Notice::kNotSimulated).name ||
                                 status == getNotice(Notice::kModelMismatch).name ||
                                 status == getNotice(Notice::kUnreliable).name;
-  return explains_nothing && inferred.fault.empty() ? listModelRemarks(reader_.getExperiment().model)
-                                                    : std::vector<std::string>{};
+  if (!explains_nothing || !inferred.fault.empty()) {
+    return {};
+  }
+  std::vector<std::string> against = listModelRemarks(reader_.getExperiment().model);
+  const SimulatorFit& fit = *inferred.posterior->fit;
+  if (const std::string grams = fit.isSimulated() ? explainByGrams(found, known, fit) : ""; !grams.empty()) {
+    against.push_back(grams);
+  }
+  return against;
+}
+
+std::string DirectInference::explainByGrams(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                                            const SimulatorFit& fit) const {
+  constexpr double kGross = 100.0, kLeft = 0.01;  // of the misfit: as faults of a recording are told
+  const ExperimentSpec& experiment = reader_.getExperiment();
+  const std::vector<BodySpec>& bodies = experiment.model.system.bodies;
+  if (experiment.model.source || !simulator_.samplesFast() || fit.chi_square < kGross * fit.degrees) {
+    return "";
+  }
+  std::vector<std::vector<std::size_t>> tried;  // bodies whose masses may be in g
+  std::vector<std::size_t> all;
+  for (std::size_t body = 0; body < bodies.size(); ++body) {
+    double mass = 0.0;
+    if (parseLiteral(bodies[body].mass.text, mass)) {
+      tried.push_back({body});
+      all.push_back(body);
+    }
+  }
+  if (all.size() > 1) {
+    tried.push_back(all);
+  }
+  const SearchStage stage("are masses in g");
+  for (const std::vector<std::size_t>& heavy : tried) {
+    ExperimentSpec light = experiment;
+    std::string names;
+    for (const std::size_t body : heavy) {
+      light.model.system.bodies[body].mass.text = "0.001 * " + bodies[body].mass.text;
+      names += (names.empty() ? "" : ", ") + bodies[body].name.text;
+    }
+    const SimulatorRefiner refiner(light, reader_.getLayout());
+    if (refiner.findLeastChiSquare(found.features, known, static_cast<Eigen::Index>(found.available.size())) <
+        kLeft * fit.chi_square) {
+      return "the mass of " + names +
+             " is 1000 times too large, as g in the place of kg (that explains 99 % of " + "the misfit)";
+    }
+  }
+  return "";
 }
 
 void DirectInference::tryWithoutSpikes(const SimulatorRefiner& simulator, AvailableFeatures& found,

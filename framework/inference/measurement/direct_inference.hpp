@@ -44,7 +44,12 @@ class DirectInference final : public MeasurementInference {
 
  private:
   /// What speaks against the model, where it explains nothing and no fault of the recording does.
-  std::vector<std::string> listAgainst(const InferredMeasurement& inferred) const;
+  std::vector<std::string> listAgainst(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                                       const InferredMeasurement& inferred) const;
+  /// Whether masses of a thousandth, given in g, explain a misfit; "" where not. Cost: that of
+  /// findLeastChiSquare() for each body whose mass is a number, and once more for all of several.
+  std::string explainByGrams(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                             const SimulatorFit& fit) const;
   struct LikeRecording;
 
   /// The experiment with the times and the excitation of a table, and the modes that stand beside it; none

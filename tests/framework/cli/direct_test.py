@@ -72,6 +72,35 @@ class Direct(FolderTestCase):
                 )
                 self.assertNotRegex(result.stderr, r"by up to [0-9.]+e\+")
 
+    def test_names_masses_in_g(self):
+        """Of one body, and of a body among two."""
+        chain = {
+            "name": "chain",
+            "parameters": {"k": {"bounds": [80, 120], "unit": "N/m"}, "c": {"bounds": [40, 60], "unit": "N/m"}},
+            "system": {
+                "bodies": {
+                    "cart": {"mass": 1.2, "joint": {"type": "slider", "coordinates": ["x"]}},
+                    "rider": {"mass": 0.4, "joint": {"type": "slider", "parent": "cart", "coordinates": ["y"]}},
+                },
+                "springs": [{"coordinate": "x", "stiffness": "k"}, {"coordinate": "y", "stiffness": "c"}],
+                "dampers": [{"coordinate": "x", "damping": 1}, {"coordinate": "y", "damping": 0.5}],
+            },
+            "initial": {"coordinates": {"x": 0.05}},
+            "outputs": {"x": {"coordinate": "x"}, "y": {"coordinate": "y"}},
+            "simulation": {"duration": 3},
+            "features": [{"samples": {"outputs": ["x", "y"], "start": 0.05, "interval": 0.05, "count": 60}}],
+            "noise": {"stddev": {"x": 1e-4, "y": 1e-4}},
+        }
+        for experiment, body in ((yaml.safe_load(CART.read_text()), "cart"), (chain, "rider")):
+            with self.subTest(body):
+                file = self.folder / "heavy.yaml"
+                file.write_text(yaml.safe_dump(experiment))
+                measured = self.simulate(file, "heavy.csv")
+                self.assertNotIn("in the place of kg", self.infer(file, measured))
+                experiment["system"]["bodies"][body]["mass"] *= 1000
+                file.write_text(yaml.safe_dump(experiment))
+                self.assertIn(f"the mass of {body} is 1000 times too large", self.infer(file, measured))
+
     def test_asks_whether_an_angle_of_more_than_a_turn_is_in_degrees(self):
         experiment = yaml.safe_load(CART.read_text())
         law = experiment["system"]["force_laws"][0]
