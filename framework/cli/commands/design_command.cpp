@@ -11,6 +11,7 @@
 #include "framework/optimal_design/excitation.hpp"
 #include "framework/optimal_design/excitation_files.hpp"
 #include "framework/optimal_design/sensor_files.hpp"
+#include "framework/optimal_design/sensors.hpp"
 #include "framework/optimal_design/verify_design.hpp"
 
 namespace twinmap::cli {
