@@ -5,6 +5,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/files/table.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
