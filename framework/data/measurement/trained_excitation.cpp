@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include "framework/data/measurement/lagrange.hpp"
 #include "framework/data/measurement/measured_signals.hpp"
@@ -58,6 +59,22 @@ VectorXd interpolate(const SampledSignal& signal, const VectorXd& times) {
   });
 }
 
+/// Times that lie in no gap of a signal, where what it was is not known.
+VectorXd leaveOutGaps(const SampledSignal& signal, const VectorXd& times) {
+  constexpr double kLongest = 1.5;
+  const double step = calcMedianStep(signal.times), same = kSameTime * step;
+  std::vector<double> known;
+  for (const double t : times) {
+    const auto next = std::lower_bound(signal.times.begin(), signal.times.end(), t - same);
+    const bool is_sample = next != signal.times.end() && *next <= t + same;
+    const bool is_between = next != signal.times.begin() && next != signal.times.end();
+    if (is_sample || !is_between || *next - *std::prev(next) <= kLongest * step) {
+      known.push_back(t);
+    }
+  }
+  return Eigen::Map<const VectorXd>(known.data(), static_cast<Index>(known.size()));
+}
+
 /// At the times of the one with the longer steps, because interpolating the other loses less.
 Pair bringTogether(const SampledSignal& trained, const SampledSignal& measured) {
   constexpr double kSameStep = 1.01;
@@ -66,7 +83,8 @@ Pair bringTogether(const SampledSignal& trained, const SampledSignal& measured) 
   const Index last_trained = trained.times.size() - 1, last_measured = measured.times.size() - 1;
   const double from = std::max({0.0, trained.times[0], measured.times[0]}) - slack;
   const double to = std::min(trained.times[last_trained], measured.times[last_measured]) + slack;
-  const VectorXd times = selectTimes(finer ? trained.times : measured.times, from, to);
+  const VectorXd times = leaveOutGaps(
+      measured, leaveOutGaps(trained, selectTimes(finer ? trained.times : measured.times, from, to)));
   return {times, interpolate(trained, times), interpolate(measured, times)};
 }
 

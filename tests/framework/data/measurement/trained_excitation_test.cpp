@@ -123,6 +123,16 @@ TEST(TrainedExcitation, OnlyWhatBothCoverIsCompared) {
             "");
 }
 
+TEST(TrainedExcitation, WhatLiesInAGapIsNotCompared) {
+  Table gap = measure(calcForce);
+  for (Column& column : gap.columns) {
+    Eigen::VectorXd left(column.values.size() - 15);  // a period and a half of the faster tone
+    left << column.values.head(150), column.values.tail(column.values.size() - 165);
+    column.values = left;
+  }
+  EXPECT_EQ(getExcitationError(gap), "");
+}
+
 TEST(TrainedExcitation, InAFileOfItsOwnIsComparedWhereTheStartHasMoved) {
   const TestFolder folder;
   ExperimentSpec experiment = makeExperiment();
