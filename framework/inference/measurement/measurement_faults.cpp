@@ -253,13 +253,18 @@ void tryWrap(const VectorXd& measured, const ResponseLayout& layout, Index outpu
     if (rounded <= 0.0) {
       continue;
     }
-    VectorXd whole = measured;
-    whole.segment(first, times) = unwrap(layout.times, values, rounded);
+    const VectorXd whole = unwrap(layout.times, values, rounded);
     const double lowest = values.minCoeff() >= 0.0 ? 0.0 : -0.5 * rounded;
-    search.tryOut(whole, fmt::format("{} jumps by {} {} again and again, as a counter that wraps: give "
-                                     "measurement.unwrap: [{}] and measurement.range: {{{}: [{}, {}]}}",
-                                     name, text, layout.output_units[static_cast<std::size_t>(output)], name,
-                                     name, toShortText(lowest, 6), toShortText(lowest + rounded, 6)));
+    const std::string said = fmt::format(
+        "{} jumps by {} {} again and again, as a counter that wraps: give "
+        "measurement.unwrap: [{}] and measurement.range: {{{}: [{}, {}]}}",
+        name, text, layout.output_units[static_cast<std::size_t>(output)], name, name, toShortText(lowest, 6),
+        toShortText(lowest + rounded, 6));
+    for (const double turns : {0.0, -1.0, 1.0}) {  // one that begins beside its limit may be a turn off
+      VectorXd corrected = measured;
+      corrected.segment(first, times) = whole.array() + turns * rounded;
+      search.tryOut(corrected, said);
+    }
   }
 }
 
