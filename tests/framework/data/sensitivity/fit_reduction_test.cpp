@@ -136,7 +136,7 @@ TEST(LongRecord, IsReducedUnlessSomethingSpeaksAgainstIt) {
   EXPECT_TRUE(isReducedByDefault(10000));
   EXPECT_FALSE(isReducedByDefault(10000, {}, ", reduce: none"));
   EXPECT_TRUE(isReducedByDefault(100, {}, ", reduce: automatic"));
-  EXPECT_FALSE(isReducedByDefault(10000, {"noise.stddev.x=0"}));
+  EXPECT_FALSE(isReducedByDefault(10000, {"noise.stddev.x=0", "transform=[z_score]"}));
   EXPECT_FALSE(isReducedByDefault(10000, {"noise.correlation={x: {autoregression: [0.5]}}"}));
   EXPECT_FALSE(isReducedByDefault(10000, {"inverse_map=none"}));
 }
