@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "kernels/linalg/decompositions.hpp"
 
@@ -21,6 +22,13 @@ struct Restricted {
   double loss = 0.0, chi_square = 0.0;
 };
 
+/// Not by Eigen's log of packets: of that the linker takes one copy for all, which may then be this file's,
+/// compiled light (cmake/PrecompiledHeaders.cmake), in the place of what computes.
+double sumLogs(const VectorXd& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0,
+                         [](double sum, double value) { return sum + std::log(value); });
+}
+
 Restricted calcRestricted(const RotatedFit& fit, double size) {
   const VectorXd precisions = (1.0 + size * size * fit.eigenvalues.array().max(0.0)).inverse();
   const MatrixXd weighted = precisions.asDiagonal() * fit.jacobian;
@@ -32,7 +40,7 @@ Restricted calcRestricted(const RotatedFit& fit, double size) {
   Restricted restricted;
   restricted.chi_square =
       precisions.dot(fit.residual.cwiseAbs2()) - descent.cwiseAbs2().cwiseQuotient(values).sum();
-  restricted.loss = restricted.chi_square - precisions.array().log().sum() + values.array().log().sum();
+  restricted.loss = restricted.chi_square - sumLogs(precisions) + sumLogs(values);
   return restricted;
 }
 
