@@ -22,8 +22,8 @@ struct Restricted {
   double loss = 0.0, chi_square = 0.0;
 };
 
-/// Not by Eigen's log of packets: of that the linker takes one copy for all, which may then be this file's,
-/// compiled light (cmake/PrecompiledHeaders.cmake), in the place of what computes.
+/// Not by Eigen's log of packets, of which the linker takes one copy for all. It may be this file's, which is
+/// compiled light.
 double sumLogs(const VectorXd& values) {
   return std::accumulate(values.begin(), values.end(), 0.0,
                          [](double sum, double value) { return sum + std::log(value); });
