@@ -144,15 +144,20 @@ bool SimulatorSampler::readsOutputs() const {
   });
 }
 
-std::vector<NoiseHypothesis> SimulatorSampler::listNoise(const NoiseHypothesis& stated,
-                                                         const VectorXd& features, const VectorXd& known,
-                                                         const VectorXd& best) const {
-  const MeasuredTrial trial = makeTrial(features, known);
+LocalMisfit SimulatorSampler::linearizeTrial(const MeasuredTrial& trial, const VectorXd& features,
+                                             const VectorXd& best) const {
   const SearchBox box(getUnknown(), {0, static_cast<Index>(getUnknown().size())}, trial.held);
   Misfit misfit(updSimulator(), *trial.model, box, features);
   VectorXd point = trial.held;
   point.head(best.size()) = best;
-  const LocalMisfit local = misfit.linearize(box.normalize(point));
+  return misfit.linearize(box.normalize(point));
+}
+
+std::vector<NoiseHypothesis> SimulatorSampler::listNoise(const NoiseHypothesis& stated,
+                                                         const VectorXd& features, const VectorXd& known,
+                                                         const VectorXd& best) const {
+  const MeasuredTrial trial = makeTrial(features, known);
+  const LocalMisfit local = linearizeTrial(trial, features, best);
   if (!local.status.ok) {
     return {};
   }
@@ -163,11 +168,7 @@ std::optional<LinearizedMeasurement> SimulatorSampler::linearize(const VectorXd&
                                                                  const VectorXd& known,
                                                                  const VectorXd& best) const {
   const MeasuredTrial trial = makeTrial(features, known);
-  const SearchBox box(getUnknown(), {0, static_cast<Index>(getUnknown().size())}, trial.held);
-  Misfit misfit(updSimulator(), *trial.model, box, features);
-  VectorXd point = trial.held;
-  point.head(best.size()) = best;
-  LocalMisfit local = misfit.linearize(box.normalize(point));
+  LocalMisfit local = linearizeTrial(trial, features, best);
   if (!local.status.ok) {
     return std::nullopt;
   }

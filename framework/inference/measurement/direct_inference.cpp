@@ -264,7 +264,7 @@ std::string DirectInference::explainByGrams(const AvailableFeatures& found, cons
     if (refiner.findLeastChiSquare(found.features, known, static_cast<Eigen::Index>(found.available.size())) <
         kLeft * fit.chi_square) {
       return "the mass of " + names +
-             " is 1000 times too large, as g in the place of kg (that explains 99 % of " + "the misfit)";
+             " is 1000 times too large, as g in the place of kg (that explains 99 % of the misfit)";
     }
   }
   return "";

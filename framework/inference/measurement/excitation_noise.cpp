@@ -66,6 +66,18 @@ std::optional<InputNoise> findInputNoise(const VectorXd& residual, const MatrixX
   return best;
 }
 
+void divideByFoundNoise(const LinearizedMeasurement& local, const FeatureExtractor& extractor,
+                        const SimulatorFit& fit, Eigen::Ref<MatrixXd> rows) {
+  for (const NoiseReport& report : fit.noise) {
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      const auto feature = static_cast<std::size_t>(local.features[static_cast<std::size_t>(i)]);
+      if (extractor.getInfos()[feature].output == report.found.output) {
+        rows.row(i) /= report.found.factor;
+      }
+    }
+  }
+}
+
 double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extractor,
                      const Eigen::MatrixXd& responses, const SimulatorFit& fit) {
   constexpr double kLargest = 30.0;  // more is another signal
@@ -76,16 +88,9 @@ double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extrac
     return 0.0;
   }
   Eigen::MatrixXd features = local.whitener->apply(extractor.extract(responses)(local.features, Eigen::all));
-  for (const NoiseReport& report : fit.noise) {
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const auto feature = static_cast<std::size_t>(local.features[static_cast<std::size_t>(i)]);
-      if (extractor.getInfos()[feature].output == report.found.output) {
-        local.residual[i] /= report.found.factor;
-        local.jacobian.row(i) /= report.found.factor;
-        features.row(i) /= report.found.factor;
-      }
-    }
-  }
+  divideByFoundNoise(local, extractor, fit, local.residual);
+  divideByFoundNoise(local, extractor, fit, local.jacobian);
+  divideByFoundNoise(local, extractor, fit, features);
   const std::optional<InputNoise> noise = findInputNoise(local.residual, local.jacobian, features, kLargest);
   const auto degrees = static_cast<double>(rows - local.jacobian.cols());
   return noise && noise->gain > kNamed && noise->chi_square < degrees + kFar * std::sqrt(2.0 * degrees)

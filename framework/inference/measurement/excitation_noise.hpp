@@ -22,6 +22,10 @@ struct InputNoise {
 std::optional<InputNoise> findInputNoise(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
                                          const Eigen::MatrixXd& responses, double largest);
 
+/// Rows of a linear model (k) in units of the noise that a fit found of their outputs.
+void divideByFoundNoise(const LinearizedMeasurement& local, const FeatureExtractor& extractor,
+                        const SimulatorFit& fit, Eigen::Ref<Eigen::MatrixXd> rows);
+
 /// The size of noise, over that of which the responses (rows x r) are, that a fit shows: where it is
 /// significant and leaves what the noise of the outputs explains; else 0.
 double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extractor,

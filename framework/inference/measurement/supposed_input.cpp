@@ -4,6 +4,7 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
+#include "framework/inference/measurement/excitation_noise.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
 #include "framework/simulation/team_simulator.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -86,7 +87,7 @@ class Supposing {
     rows << responses, VectorXd::Zero(rows.rows());
     MatrixXd own = local->whitener->apply(reader_.getExtractor().extract(rows)(local->features, Eigen::all));
     own.rightCols(1) = local->residual;
-    divideRows(*local, fit, own);
+    divideByFoundNoise(*local, reader_.getExtractor(), fit, own);
     const MatrixXd effects = own.leftCols(responses.cols());
     if (moved_.size() == 0) {
       moved_ = VectorXd::Zero(responses.cols());
@@ -96,17 +97,6 @@ class Supposing {
     moved_ = likeliest;
     input_.offset = responses * likeliest;
     return true;
-  }
-
-  void divideRows(const LinearizedMeasurement& local, const SimulatorFit& fit, MatrixXd& rows) const {
-    for (const NoiseReport& report : fit.noise) {
-      for (Index i = 0; i < rows.rows(); ++i) {
-        const auto feature = static_cast<std::size_t>(local.features[static_cast<std::size_t>(i)]);
-        if (reader_.getExtractor().getInfos()[feature].output == report.found.output) {
-          rows.row(i) /= report.found.factor;
-        }
-      }
-    }
   }
 
   const MeasurementReader& reader_;
