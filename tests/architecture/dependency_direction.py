@@ -83,10 +83,7 @@ OPERATIONS = re.compile(r"kernels/lanes/program/(operation_list|operation|real)\
 
 # Libraries that stay behind one room. Eigen's decompositions take 3 to 15 s in each translation unit that has one.
 LIBRARIES = {
-    r"Eigen/(Cholesky|Dense|Eigen|Eigenvalues|Geometry|Householder|Jacobi|LU|QR|SVD)|unsupported/Eigen/.*": {
-        "linalg",
-        "kernels/unsupported/Eigen/NonLinearOptimization",
-    },
+    r"Eigen/(Cholesky|Dense|Eigen|Eigenvalues|Geometry|Householder|Jacobi|LU|QR|SVD)|unsupported/Eigen/.*": {"linalg"},
     r"(Simbody|SimTK\w*|simbody/.*|simmath/.*)(\.h)?": {"models/mechanism"},
     r"yaml-cpp/.*": {"experiment"},
     r"udunits2.*": {"experiment"},

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 
-#include "framework/analysis/least_squares.hpp"
 #include "framework/analysis/linear_map.hpp"
-#include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/data/sensitivity/stencil_simulator.hpp"
 #include "framework/estimation/box_prior.hpp"
+#include "framework/estimation/refined/search.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
@@ -48,12 +48,41 @@ BaselineResult runLinearRegression(const FeatureTransform& transform, const Labe
   return result;
 }
 
+/// How many iterations `most` simulations are, by a linearisation each (search.hpp).
+int countIterations(const Simulator& simulator, const RefinementModel& model, int most) {
+  constexpr int kTrials = 4;
+  const int linearization = simulator.hasDerivatives() ? 1 : countNeighbours(model.getUnknown().size());
+  return std::max(0, (most - linearization) / (kTrials + linearization));
+}
+
+/// Where the search from `start` ended, with the inputs held; its time is left to the caller.
+struct LeastSquaresFit {
+  VectorXd mean, stddev;  ///< of all that is unknown
+  bool converged = false;
+};
+
+LeastSquaresFit fitLeastSquares(Simulator& simulator, const RefinementModel& model, const VectorXd& start,
+                                const VectorXd& inputs, const VectorXd& measured, int max_simulations) {
+  VectorXd point(start.size() + inputs.size());
+  point << start, inputs;
+  const SearchBox box(model.getUnknown(), {0, start.size()}, point);
+  Misfit misfit(simulator, model, box, measured);
+  const SearchEnd end =
+      search(misfit, box.normalize(point), countIterations(simulator, model, max_simulations));
+  LeastSquaresFit fit{start, 0.5 * calcWidths(model.getUnknown()), end.converged};
+  if (end.local.status.ok) {
+    fit.mean = box.makePoint(end.local.at).head(start.size());
+    fit.stddev = fit.stddev.cwiseProduct(end.local.calcCovariance().diagonal().cwiseSqrt());
+  }
+  return fit;
+}
+
 BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const Study& study, const LabelledSets& sets) {
   const LabelledFeatures& test = sets.test;
-  const std::vector<ParameterSpec> unknown = collectUnknown(study.experiment.model);
+  const RefinementModel model(collectUnknown(study.experiment.model), study.extractor, study.noise);
   const NoiseWhitener noise(test.noise_covariance);
-  const VectorXd widths = calcWidths(study.experiment.model.parameters), center = calcBoxCenter(unknown);
-  const Index p = widths.size();
+  const VectorXd center = calcBoxCenter(model.getUnknown());
+  const auto p = static_cast<Index>(study.experiment.model.parameters.size());
   const int samples = std::min(spec.samples, static_cast<int>(test.features.cols()));
   BaselineResult result{"least_squares", samples, {MatrixXd(p, samples), MatrixXd(p, samples)}};
   VectorXd seconds(samples);
@@ -64,11 +93,10 @@ BaselineResult runLeastSquares(const LeastSquaresSpec& spec, const Study& study,
     const VectorXd start =
         spec.start == LeastSquaresStart::kBoxCenter ? center : findNearest(noise, sets.train, measured);
     const VectorXd inputs = test.inputs.rows() > 0 ? VectorXd(test.inputs.col(i)) : VectorXd();
-    const LeastSquaresFit fit = fitLeastSquares(
-        simulator, {study.extractor, noise, unknown, measured, inputs}, start, spec.max_simulations);
-    result.predictions.mean.col(i) = fit.parameters.head(p);
-    result.predictions.stddev.col(i) =
-        calcLimitCovariance(fit.information).diagonal().head(p).cwiseSqrt().cwiseProduct(widths);
+    const LeastSquaresFit fit =
+        fitLeastSquares(simulator, model, start, inputs, measured, spec.max_simulations);
+    result.predictions.mean.col(i) = fit.mean.head(p);
+    result.predictions.stddev.col(i) = fit.stddev.head(p);
     converged[i] = fit.converged;
     seconds[i] = stopwatch.getSeconds();
   });

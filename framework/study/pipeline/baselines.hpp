@@ -23,10 +23,10 @@ struct BaselineResult {
 Estimates predictPriorMean(const ModelSpec& model, Eigen::Index samples);
 
 /// Runs one baseline on the test samples. `transform`: what a linear regression sees of the features. Least
-/// squares searches all that is unknown, with the inputs of each sample; it compares features in units of
-/// their mean noise (labelled sets' covariance); its standard deviations are those of the Fisher information
-/// at its solution, with the box as in calcLimitCovariance; it knows no other priors. All but the time is
-/// independent of the threads.
+/// squares searches all that is unknown (search.hpp) from one start, with the inputs of each sample; features
+/// count in units of their noise, the box as a normal distribution, and no other priors; a simulation that
+/// fails at the start leaves the start with the box's half-widths. All but the time is independent of the
+/// threads.
 BaselineResult runBaseline(const BaselineSpec& spec, const Study& study, const LabelledSets& samples,
                            const FeatureTransform& transform);
 
