@@ -55,7 +55,7 @@ int countIterations(const Simulator& simulator, const RefinementModel& model, in
   return std::max(0, (most - linearization) / (kTrials + linearization));
 }
 
-/// Where the search from `start` ended, with the inputs held; its time is left to the caller.
+/// The end of a search with the inputs held.
 struct LeastSquaresFit {
   VectorXd mean, stddev;  ///< of all that is unknown
   bool converged = false;
