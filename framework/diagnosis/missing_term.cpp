@@ -1,11 +1,15 @@
 #include "framework/diagnosis/missing_term.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/term_ranking.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 
@@ -14,19 +18,62 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The unknown parameters that explain a measurement best, as far as is known.
-VectorXd findBest(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& unknown) {
-  const auto u = static_cast<Index>(unknown.size());
-  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->best.size() >= u) {
-    return inferred.posterior->fit->best.head(u);  // before the sizes of a clock's faults
+constexpr double kLevel = 0.01;  // DiagnosisOptions::level
+
+/// What explains a measurement best, as far as is known: a point, and by how much it misses.
+struct KnownFit {
+  VectorXd point;  ///< u; empty where nothing is known
+  double chi_square = 0.0, degrees = 0.0;
+};
+
+KnownFit findBest(const InferredMeasurement& inferred, Index u) {
+  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->isSimulated() &&
+      inferred.posterior->fit->best.size() >= u) {
+    const SimulatorFit& fit = *inferred.posterior->fit;
+    return {fit.best.head(u), fit.chi_square, fit.degrees};  // before the sizes of a clock's faults
   }
-  return inferred.explanation.size() >= u ? VectorXd(inferred.explanation.head(u)) : calcBoxCenter(unknown);
+  if (inferred.refined && inferred.refined->isAccepted() && inferred.refined->point.size() >= u) {
+    return {inferred.refined->point.head(u), inferred.refined->chi_square, inferred.refined->degrees};
+  }
+  return {};
 }
 
-CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& recording,
-                   const InferredMeasurement& inferred) {
+/// The sizes of noise that were found, in the place of those stated.
+void takeFoundNoise(const InferredMeasurement& inferred, NoiseSpec& noise) {
+  if (!inferred.posterior || !inferred.posterior->fit) {
+    return;
+  }
+  for (const NoiseReport& report : inferred.posterior->fit->noise) {
+    for (OutputNoiseSpec& one : noise.stddev) {
+      if (one.name.text == report.output && report.found.size_was_inferred && report.stddev > 0.0) {
+        one.stddev = NoiseStddev(report.stddev / (noise.scale > 0.0 ? noise.scale : 1.0));
+      }
+    }
+  }
+}
+
+/// Without the samples that are no noise at the best fit.
+RecordedFeatures leaveOutliers(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+                               const VectorXd& point) {
+  constexpr double kLargest = 5.0;  // of thousands of normal numbers none is beyond 5
+  RecordedFeatures others = recording;
   const RecordingsProblem problem(experiment, recording);
-  const RecordingFit fit = problem.fit(findBest(inferred, problem.getUnknown()));
+  const VectorXd residual = problem.linearize(point).residual;
+  const std::vector<Index>& fitted = problem.get().trials.front().model->getWhole().features;
+  for (std::size_t i = 0; i < fitted.size(); ++i) {
+    if (std::abs(residual[static_cast<Index>(i)]) > kLargest && fitted[i] < others.features.front().size()) {
+      others.features.front()[fitted[i]] = NAN;
+    }
+  }
+  return others;
+}
+
+/// Searched from `start`, with the noise of the residual where its size is not known. It has no point where
+/// nothing can be simulated.
+CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+                   const VectorXd& start) {
+  const RecordingsProblem problem(experiment, recording);
+  const RecordingFit fit = problem.fit(start);
   const auto residuals = static_cast<double>(recording.features.front().array().isFinite().count());
   CurrentFit current{experiment, fit.point, fit.chi_square,
                      std::max(1.0, residuals - static_cast<double>(fit.point.size()))};
@@ -41,11 +88,70 @@ CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& rec
   return current;
 }
 
-std::optional<MissingTerm> findMissing(const ExperimentSpec& experiment, const RecordedFeatures& recording,
-                                       const InferredMeasurement& inferred) {
-  constexpr double kLevel = 0.01;  // DiagnosisOptions::level
+/// The one with the largest evidence by a fit, of the three best that stand out; null of none.
+const RankedTerm* fitBest(const CurrentFit& current, const RecordedFeatures& recording,
+                          const ScoredCandidates& scored, Index p, std::vector<RankedTerm>& ranked) {
   constexpr std::size_t kFitted = 3;
-  const CurrentFit current = fitFrom(experiment, recording, inferred);
+  ranked.resize(std::min(ranked.size(), kFitted), RankedTerm{{}});
+  const RankedTerm* best = nullptr;
+  for (RankedTerm& one : ranked) {
+    if (one.finding.p_value < kLevel) {
+      fitRanked(current, recording, scored, p, kLevel, one);
+      best = one.finding.fitted && (best == nullptr || hasMoreEvidence(one, *best)) ? &one : best;
+    }
+  }
+  return best != nullptr && best->finding.log_evidence > 0.0 ? best : nullptr;
+}
+
+/// Whether what remains with a term is noise as it is supposed.
+bool explains(const CurrentFit& current, const RecordedFeatures& recording, const FittedTerm& term) {
+  const RecordingsProblem problem(term.augmented.experiment, recording);
+  const VectorXd residual = problem.linearize(term.point).residual;
+  const double degrees = std::max(1.0, current.degrees - static_cast<double>(term.augmented.added));
+  return testResidual(residual, degrees, problem.listInfos()).calcPValue() >= kMismatchLevel;
+}
+
+MissingTerm describe(const RankedTerm& best, const std::vector<RankedTerm>& ranked) {
+  const TermFinding& found = best.finding;
+  MissingTerm missing{
+      found.candidate.term, found.candidate.meaning, found.candidate.unit, found.estimate, found.stddev,
+      found.share,          found.log_evidence,      found.shifts};
+  for (const RankedTerm& one : ranked) {
+    if (&one != &best && one.finding.fitted &&
+        found.log_evidence - one.finding.log_evidence < kTiedEvidence) {
+      missing.rivals.push_back(one.finding.candidate.term);
+    }
+  }
+  return missing;
+}
+
+/// Of those visible, up to the size that matters.
+std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored, Index p) {
+  const double needed = calcCriticalZ(kLevel, scored.tested) + calcCriticalZ(0.1, 1);  // 95 %, one-sided
+  std::optional<UnnoticedTerm> worst;
+  for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
+    const TermCandidate& candidate = scored.candidates[i];
+    if (!scored.scores[i].visible) {
+      continue;
+    }
+    const double size = std::min(needed * scored.scores[i].stddev, candidate.size);
+    const VectorXd shifts = scored.test->calcShifts(static_cast<Index>(i), size)
+                                .head(p)
+                                .cwiseQuotient(scored.stddevs.head(p))
+                                .cwiseAbs();
+    Index most = 0;
+    if (const double shift = shifts.maxCoeff(&most); !worst || shift > worst->shift) {
+      worst = {candidate.term, candidate.meaning, candidate.unit, size, static_cast<std::size_t>(most),
+               shift};
+    }
+  }
+  return worst;
+}
+
+/// The term that would explain a misfit.
+std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+                                         const VectorXd& start) {
+  const CurrentFit current = fitFrom(experiment, recording, start);
   constexpr double kGross =
       1e4;  // chi-square a residual: a recording that the model is not about, or a wrong unit
   if (current.point.size() == 0 || current.chi_square > kGross * current.degrees) {
@@ -55,40 +161,104 @@ std::optional<MissingTerm> findMissing(const ExperimentSpec& experiment, const R
       scoreCandidates(current.experiment, recording, current.point, CandidateKinds::kWithoutStates);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
-  ranked.resize(std::min(ranked.size(), kFitted), RankedTerm{{}});
-  const RankedTerm* best = nullptr;
-  for (RankedTerm& one : ranked) {
-    if (one.finding.p_value < kLevel) {
-      fitRanked(current, recording, scored, p, kLevel, one);
-      best = one.finding.fitted && (best == nullptr || hasMoreEvidence(one, *best)) ? &one : best;
-    }
-  }
-  if (best == nullptr || !(best->finding.log_evidence > 0.0)) {
+  const RankedTerm* best = fitBest(current, recording, scored, p, ranked);
+  if (best == nullptr) {
     return {};
   }
-  TermFinding found = best->finding;
+  MissingTerm missing = describe(*best, ranked);
   if (hasUnknownNoise(experiment.noise)) {
-    found.share =
-        1.0 - found.chi_square / current.chi_square;  // what is noise is not known: of the whole residual
+    missing.share =  // what is noise is not known: of the whole residual
+        1.0 - best->finding.chi_square / current.chi_square;
   }
-  return MissingTerm{
-      found.candidate.term, found.candidate.meaning, found.candidate.unit, found.estimate, found.stddev,
-      found.share,          found.log_evidence};
+  return missing;
+}
+
+/// Of a measurement that noise explains, of whatever kind that was found.
+ModelTest testExplained(ExperimentSpec experiment, const RecordedFeatures& recorded,
+                        const InferredMeasurement& inferred, const KnownFit& known) {
+  const bool is_sized = hasUnknownNoise(experiment.noise);
+  takeFoundNoise(inferred, experiment.noise);
+  const SimulatorFit* fit =
+      inferred.posterior && inferred.posterior->fit ? &*inferred.posterior->fit : nullptr;
+  const bool has_outliers = fit != nullptr && !fit->outliers.empty();
+  const RecordedFeatures recording =
+      has_outliers ? leaveOutliers(experiment, recorded, known.point) : recorded;
+  CurrentFit current{experiment, known.point, known.chi_square, known.degrees};
+  const ScoredCandidates scored =
+      scoreCandidates(experiment, recording, known.point, CandidateKinds::kWithoutStates);
+  const auto p = static_cast<Index>(experiment.model.parameters.size());
+  ModelTest test;
+  if (!is_sized) {
+    test.unnoticed = findUnnoticed(scored, p);
+  }
+  std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
+  if (ranked.empty() || !(ranked.front().finding.p_value < kLevel)) {
+    return test;
+  }
+  current = fitFrom(experiment, recording, known.point);
+  const RankedTerm* best =
+      current.point.size() > 0 ? fitBest(current, recording, scored, p, ranked) : nullptr;
+  if (best == nullptr || !(best->finding.log_evidence > kTiedEvidence) ||
+      !(best->finding.shifts.cwiseAbs().maxCoeff() > 1.0) ||
+      (fit != nullptr && fit->hasOffset() && best->finding.candidate.term.rfind("offset.", 0) == 0)) {
+    return test;
+  }
+  MissingTerm missing = describe(*best, ranked);
+  missing.explains = explains(current, recording, best->fitted);
+  if (missing.explains || best->finding.holds_cautiously) {
+    test.missing = std::move(missing);
+  }
+  return test;
+}
+
+/// Of a system of bodies that is simulated in time.
+bool isKnown(const ModelSpec& model) {
+  return isGiven(model.system) && model.simulation.duration > 0.0;
+}
+
+bool isMisfit(const InferredMeasurement& inferred) {
+  return isMismatch(listStatuses(inferred)) || !inferred.clock_faults.empty();
 }
 
 }  // namespace
 
-std::optional<MissingTerm> findMissingTerm(const ExperimentSpec& experiment,
-                                           const RecordedFeatures& recording,
-                                           const InferredMeasurement& inferred) {
-  if (!isGiven(experiment.model.system) || !(experiment.model.simulation.duration > 0.0)) {
-    return {};
+void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+               InferredMeasurement& inferred) {
+  const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
+  const auto u = static_cast<Index>(unknown.size());
+  const KnownFit known = findBest(inferred, u);
+  const bool misfits = isMisfit(inferred);
+  if (!isKnown(experiment.model) || (known.point.size() == 0 && !misfits)) {
+    return;
   }
   try {
-    return findMissing(experiment, recording, inferred);
+    if (misfits) {
+      const VectorXd start = known.point.size() > 0             ? known.point
+                             : inferred.explanation.size() >= u ? VectorXd(inferred.explanation.head(u))
+                                                                : calcBoxCenter(unknown);
+      inferred.model_test = ModelTest{explainMisfit(experiment, recording, start)};
+    } else {
+      inferred.model_test = testExplained(experiment, recording, inferred, known);
+    }
   } catch (const std::runtime_error&) {
-    return {};  // the best fit cannot be simulated again: the inference's own statuses say what is wrong
+    // the best fit cannot be simulated again: the inference's own statuses say what is wrong
   }
+}
+
+std::optional<TimedRecording> testModel(const MeasurementReader& reader, const Table& table,
+                                        std::optional<double> start, const VectorXd& known,
+                                        InferredMeasurement& inferred) {
+  const ExperimentSpec& experiment = reader.getExperiment();
+  const auto u = static_cast<Index>(collectUnknown(experiment.model).size());
+  const bool misfits = isMisfit(inferred);
+  if (reader.findReduction() != nullptr || !inferred.fault.empty() || !isKnown(experiment.model) ||
+      inferred.states_noise || (!misfits && findBest(inferred, u).point.size() == 0)) {
+    return std::nullopt;
+  }
+  TimedRecording recording = readTimedRecording(reader, table, start, known);
+  testModel(recording.getExperiment(experiment), recording.recording, inferred);
+  return misfits || inferred.findMissing() != nullptr ? std::make_optional(std::move(recording))
+                                                      : std::nullopt;
 }
 
 }  // namespace twinmap

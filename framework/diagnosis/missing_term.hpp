@@ -7,12 +7,21 @@
 
 namespace twinmap {
 
-/// The first term that diagnose() would name, of those without states, for a measurement that was inferred
-/// and is a model_mismatch or a clock_fault; none where nothing is found, or the model is not a system that
-/// is simulated in time. Searched from where the measurement was explained best. Cost: one simulation with
-/// derivatives along all candidates, and fits with the three best, some 50 simulations with derivatives.
-std::optional<MissingTerm> findMissingTerm(const ExperimentSpec& experiment,
-                                           const RecordedFeatures& recording,
-                                           const InferredMeasurement& inferred);
+/// What a measurement that was inferred says of terms that the model lacks, of those without states that
+/// diagnose() knows: sets inferred.model_test. Of a misfit or a clock's fault that is the first term that
+/// diagnose() would name. Any other term has evidence (kTiedEvidence), stands out of what remains with it,
+/// and moves a parameter by more than its standard deviation. Nothing is asked of a model that is not a
+/// system simulated in time. Nor is it where no simulation is known that explains the measurement, but for a
+/// misfit. Cost: one simulation with derivatives along all candidates, and fits with the three best where one
+/// of them stands out, some 50 simulations with derivatives.
+void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+               InferredMeasurement& inferred);
+
+/// The same of a window of a table, as `reader` infers it at `known` inputs. Left out are a reduced response,
+/// a measurement that a fault explains, and one that states its own noise. Returns the recording for a
+/// diagnosis, after a misfit, a clock's fault, or a term that is missing. Throws MeasurementError.
+std::optional<TimedRecording> testModel(const MeasurementReader& reader, const Table& table,
+                                        std::optional<double> start, const Eigen::VectorXd& known,
+                                        InferredMeasurement& inferred);
 
 }  // namespace twinmap

@@ -18,12 +18,29 @@
 
 namespace twinmap {
 
-/// The term that a model most likely lacks, where it does not explain a measurement (framework/diagnosis).
+/// The term that a model most likely lacks (framework/diagnosis).
 struct MissingTerm {
   std::string term, meaning, unit;
   double size = 0.0, stddev = 0.0;
-  double share = 0.0;         ///< of the misfit beyond the noise that it takes away
-  double log_evidence = 0.0;  ///< against none
+  double share = 0.0;                 ///< of the misfit beyond the noise that it takes away
+  double log_evidence = 0.0;          ///< against none
+  Eigen::VectorXd shifts{};           ///< p: how the parameters move with it, in their sds without
+  std::vector<std::string> rivals{};  ///< terms that the measurement does not tell from it
+  bool explains = false;              ///< whether what remains with it is noise as it is stated
+};
+
+/// The term that may move a parameter most without being noticed.
+struct UnnoticedTerm {
+  std::string term, meaning, unit;
+  double size = 0.0;          ///< that is noticed in 95 % of measurements
+  std::size_t parameter = 0;  ///< that it moves most
+  double shift = 0.0;         ///< by then, in its sds
+};
+
+/// What a measurement says of terms that the model lacks.
+struct ModelTest {
+  std::optional<MissingTerm> missing{};
+  std::optional<UnnoticedTerm> unnoticed{};  ///< none where the size of the noise was not stated
 };
 
 /// How a recording was cut, where it was inferred in segments.
@@ -41,6 +58,7 @@ struct InferredMeasurement {
   double start = 0.0;                        ///< time in the file that is 0 of the model, s
   std::vector<std::string> remarks{};        ///< how it was read, a phrase each
   std::vector<std::string> left_out{};       ///< what of the recording is missing and why, a phrase each
+  bool states_noise = false;                 ///< whether it, or its excitation, has noise of its own
   Estimate by_estimator;                     ///< not given where there is no trained estimator
   bool estimator_is_calibrated = true;       ///< isCalibrated()
   bool estimator_coverage_is_short = false;  ///< of the run's test samples, unrefined (CoverageRecord)
@@ -52,7 +70,7 @@ struct InferredMeasurement {
   Eigen::MatrixXd basins{};
   std::vector<ClockFault> clock_faults{};  ///< of the recorder, inferred with the parameters
   std::string fault{};  ///< of the measurement, that explains a gross misfit (explainByFault()); "" of none
-  std::optional<MissingTerm> missing{};  ///< where that was asked for, and something was found
+  std::optional<ModelTest> model_test{};  ///< where a simulation explains it, and the model is known
   bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted
   std::optional<Refined> refined;  ///< on the simulator, where that was tried; accepted or not
   std::optional<PosteriorEstimate> posterior{};  ///< where it was asked for, or taken; reliable or not
@@ -62,6 +80,11 @@ struct InferredMeasurement {
   std::vector<std::string> unused{};   ///< parameters that nothing in the experiment depends on
   std::vector<Ridge> ridges{};         ///< of the simulator's posterior, where that alone was sampled
   std::optional<SegmentReport> segments{};
+
+  /// Null of none.
+  const MissingTerm* findMissing() const {
+    return model_test && model_test->missing ? &*model_test->missing : nullptr;
+  }
 };
 
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there

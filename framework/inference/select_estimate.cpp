@@ -117,6 +117,23 @@ Statuses listOfOthers(const InferredMeasurement& inferred) {
   return statuses;
 }
 
+/// A term goes before noise that explains a measurement as well. What the noise was taken for is then left
+/// out, if stated noise remains with the term.
+void addMissing(const InferredMeasurement& inferred, Statuses& statuses) {
+  const MissingTerm* missing = inferred.findMissing();
+  const bool is_said = missing != nullptr && inferred.clock_faults.empty() && !isMismatch(statuses);
+  if (!is_said) {
+    return;
+  }
+  if (missing->explains) {
+    const auto is_excuse = [](const std::string& status) {
+      return status == "noise_coloured" || status == "sensor_offset" || status == "noise_larger";
+    };
+    statuses.erase(std::remove_if(statuses.begin(), statuses.end(), is_excuse), statuses.end());
+  }
+  statuses.insert(statuses.begin(), "missing_term");
+}
+
 }  // namespace
 
 Estimate selectEstimate(const InferredMeasurement& inferred) {
@@ -159,6 +176,10 @@ bool isUncalibrated(const InferredMeasurement& inferred) {
          (isAccepted(inferred) ? inferred.coverage_is_short : inferred.estimator_coverage_is_short);
 }
 
+bool isMismatch(const std::vector<std::string>& statuses) {
+  return !statuses.empty() && statuses.front() == toString(TrustStatus::kModelMismatch);
+}
+
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
   const PosteriorEstimate* posterior = findSimulated(inferred);
   if (posterior != nullptr && !posterior->fit->isSimulated() && !inferred.by_estimator.isGiven()) {
@@ -168,6 +189,7 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
   if (inferred.posterior && inferred.posterior->isReliable() && !inferred.posterior->doubt.empty()) {
     statuses.emplace_back(inferred.posterior->getStatus());
   }
+  addMissing(inferred, statuses);
   if (statuses.empty() && (inferred.trust || posterior != nullptr)) {
     statuses.emplace_back(toString(TrustStatus::kOk));
   }

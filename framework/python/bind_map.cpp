@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/data/measurement/files/read_table.hpp"
+#include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/known_value.hpp"
@@ -57,10 +58,19 @@ InferredEstimate inferBy(PythonMap& map, const InferRequest& request, const Infe
   return {std::move(measurement), std::move(estimate)};
 }
 
+/// As the command does.
+InferredMeasurement inferAndTest(const PythonMap& map, MeasurementInference& session,
+                                 const InferRequest& request, const Eigen::VectorXd& known,
+                                 const Table& table) {
+  InferredMeasurement measurement = session.infer(table, request.start, known);
+  testModel(map.getReader(), table, request.start, known, measurement);
+  return measurement;
+}
+
 InferredEstimate inferFile(PythonMap& map, const std::string& path, const InferRequest& request) {
   return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
-    return session.infer(readTable(path, map.getReader().listColumns(), session.getMissingCells()),
-                         request.start, known);
+    return inferAndTest(map, session, request, known,
+                        readTable(path, map.getReader().listColumns(), session.getMissingCells()));
   });
 }
 
@@ -69,7 +79,7 @@ InferredEstimate inferColumns(PythonMap& map, const NamedVectors& columns, const
   return inferBy(map, request, [&](MeasurementInference& session, const Eigen::VectorXd& known) {
     const Table table =
         makeTable("measurement", named, map.getReader().listColumns(), session.getMissingCells());
-    return session.infer(table, request.start, known);
+    return inferAndTest(map, session, request, known, table);
   });
 }
 

@@ -20,6 +20,11 @@ const std::vector<NoticeText> kStatuses{
      "no candidate explains what remains; the intervals are those of effective parameters in this test",
      "Add terms of your own to the experiment file: candidates.",
      "Something acts on the machine, or on its sensors, that none of the tested terms describes."},
+    {Notice::kMissingTerm, "missing_term", true, kMisleading, "{0} may be missing ({1}): {2}",
+     "Ask what the model lacks: twinmap diagnose FILE RECORDINGS.",
+     "Noise explains the measurement, but a term that the model lacks explains it better, and parameters "
+     "stand "
+     "in for it."},
     {Notice::kOutsideTraining, "outside_training", true, kMisleading,
      "the features are {0:.2g} times as far from the training samples as any simulated measurement",
      "Widen the bounds and train again: here the estimator extrapolates.",

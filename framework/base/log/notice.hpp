@@ -16,6 +16,7 @@ enum class Notice {
   kOk,
   kModelMismatch,
   kModelIncomplete,
+  kMissingTerm,
   kOutsideTraining,
   kAtBounds,
   kUninformative,

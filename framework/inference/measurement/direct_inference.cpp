@@ -200,6 +200,7 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   inferred.source = table.source;
   inferred.start = reader_.getStart(table, start);
   inferred.left_out = found.remarks;
+  inferred.states_noise = own.has_value();
   const std::vector<std::string> bridged = describeBridged(reader_.getExperiment().model);
   inferred.remarks.insert(inferred.remarks.end(), bridged.begin(), bridged.end());
   if (tryClock(found, known, inferred)) {

@@ -7,9 +7,6 @@
 
 namespace twinmap {
 
-/// Whether the most severe of the statuses is model_mismatch: then no other remedy helps.
-bool isMismatch(const std::vector<std::string>& statuses);
-
 /// The status with its numbers, then for each thing that is wrong a line that says what, and one that says
 /// what to do.
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,

@@ -191,9 +191,46 @@ double findNoiseFactor(const InferredMeasurement& inferred) {
 
 /// "; coulomb.x would explain 93 % of it (dry friction: ...)"
 std::string describeMissing(const InferredMeasurement& inferred) {
-  return inferred.missing ? fmt::format("; {} would explain {:.0f} % of it ({})", inferred.missing->term,
-                                        100.0 * inferred.missing->share, inferred.missing->meaning)
-                          : "";
+  const MissingTerm* missing = inferred.findMissing();
+  return missing != nullptr ? fmt::format("; {} would explain {:.0f} % of it ({})", missing->term,
+                                          100.0 * missing->share, missing->meaning)
+                            : "";
+}
+
+/// Two digits; "110", not "1.1e+02".
+std::string toShiftText(double shift) {
+  constexpr double kTens = 10.0;
+  return fmt::format(shift < kTens ? "{:.2g}" : "{:.0f}", shift);
+}
+
+/// "c would fall by 99 of its sds": the parameter that a term moves most.
+std::string describeShift(const Eigen::VectorXd& shifts, const std::vector<ParameterSpec>& parameters) {
+  Index most = 0;
+  const double size = shifts.cwiseAbs().maxCoeff(&most);
+  return fmt::format("{} would {} by {} of its sds", parameters[static_cast<std::size_t>(most)].name.text,
+                     shifts[most] < 0.0 ? "fall" : "rise", toShiftText(size));
+}
+
+std::string explainMissingTerm(const MissingTerm& missing, const std::vector<ParameterSpec>& parameters) {
+  const std::string rivals =
+      missing.rivals.empty() ? "" : fmt::format("; {} would do as well", listNames(missing.rivals));
+  return explainNotice(Notice::kMissingTerm, missing.term, missing.meaning,
+                       describeShift(missing.shifts, parameters) + rivals);
+}
+
+/// What could be missing all the same, below an "ok".
+std::string describeUnnoticed(const InferredMeasurement& inferred,
+                              const std::vector<ParameterSpec>& parameters) {
+  constexpr double kNoticed = 1.0;
+  if (!inferred.model_test || !inferred.model_test->unnoticed ||
+      !(inferred.model_test->unnoticed->shift > kNoticed)) {
+    return "";
+  }
+  const UnnoticedTerm& term = *inferred.model_test->unnoticed;
+  constexpr int kDigits = 2;
+  return fmt::format("  could go unnoticed: {} below {}{} ({} by up to {} of its sds)\n", term.term,
+                     toShortText(term.size, kDigits), term.unit.empty() ? "" : " " + term.unit,
+                     parameters[term.parameter].name.text, toShiftText(term.shift));
 }
 
 bool isMismatch(const std::optional<Trust>& trust) {
@@ -238,7 +275,7 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
 /// With the term of the model that would explain the recording as well.
 std::string explainClock(const InferredMeasurement& inferred) {
   constexpr double kAsWell = 0.9;  // of the misfit beyond the noise
-  const MissingTerm* term = inferred.missing ? &*inferred.missing : nullptr;
+  const MissingTerm* term = inferred.findMissing();
   const auto is_clock = [](const std::string& name) {  // of the candidates
     return name.rfind("delay.", 0) == 0 || name.rfind("clock.", 0) == 0;
   };
@@ -300,6 +337,9 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   const auto is = [&](Notice notice) { return status == getNotice(notice).name; };
   if (is(Notice::kModelMismatch)) {
     return explainMismatch(inferred, parameters, features);
+  }
+  if (is(Notice::kMissingTerm)) {
+    return explainMissingTerm(*inferred.findMissing(), parameters);
   }
   if (is(Notice::kOutsideTraining)) {
     return explainNotice(Notice::kOutsideTraining, inferred.trust->distance);
@@ -388,10 +428,6 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::st
 
 }  // namespace
 
-bool isMismatch(const std::vector<std::string>& statuses) {
-  return !statuses.empty() && statuses.front() == getNotice(Notice::kModelMismatch).name;
-}
-
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features) {
   const Estimate estimate = selectEstimate(inferred);
@@ -401,6 +437,9 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
     text += "  " + against + "\n";
   }
   const bool misfits = isMismatch(estimate.statuses);
+  if (estimate.statuses == std::vector<std::string>{getNotice(Notice::kOk).name}) {
+    text += describeUnnoticed(inferred, parameters);
+  }
   for (const std::string& status : estimate.statuses) {
     const std::string explained = explainStatus(status, inferred, estimate, parameters, features);
     const bool is_first = status == getNotice(Notice::kModelMismatch).name ||

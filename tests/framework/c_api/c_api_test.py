@@ -24,10 +24,11 @@ def use(*arguments):
 
 
 def read_answers(lines):
-    """Without the term that a model may lack, which the command alone looks for."""
+    """Without what is said of terms that the model may lack, which the library does not look for."""
     answers = [json.loads(line) for line in lines.splitlines()]
     for answer in answers:
-        answer.pop("missing", None)
+        for key in ("missing", "unnoticed", "model_tested"):
+            answer.pop(key, None)
     return answers
 
 

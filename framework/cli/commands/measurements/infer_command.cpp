@@ -66,7 +66,7 @@ class InferCommand {
         known_(collectKnown(getModel().inputs, parseKnownValues(arguments.known))),
         asked_{arguments.run, {}, {}, arguments.known, {}, arguments.posterior_draws},
         is_stream_(arguments.follow),
-        names_missing_(!arguments.follow && !arguments.csv),
+        tests_model_(!arguments.follow),
         diagnoses_(arguments.diagnose),
         printer_(chooseFormat(arguments), getModel().parameters, session_->refines(),
                  session_->samplesPosteriors()),
@@ -125,16 +125,13 @@ class InferCommand {
         InferredMeasurement inferred = session_->infer(table, start, known_);
         inferred.asked = describeAsked(table.source, start);
         std::optional<TimedRecording> recording;
-        if (names_missing_ && source_.getReader().findReduction() == nullptr && inferred.fault.empty() &&
-            (isMismatch(selectEstimate(inferred).statuses) || !inferred.clock_faults.empty())) {
+        if (tests_model_) {
           waiting.describe("look for what the model lacks, " + nameWindow(table.source, start));
-          recording = readTimedRecording(source_.getReader(), table, start, known_);
-          inferred.missing = findMissingTerm(recording->getExperiment(source_.getExperiment()),
-                                             recording->recording, inferred);
+          recording = testModel(source_.getReader(), table, start, known_, inferred);
         }
-        inferred.asked.diagnoses = diagnoses_ && recording;
+        inferred.asked.diagnoses = recording && diagnoses_;
         waiting.clear();
-        print(inferred, diagnoses_ && recording ? &*recording : nullptr);
+        print(inferred, inferred.asked.diagnoses ? &*recording : nullptr);
         draw(table, inferred);
         ++count_;
       } catch (const std::exception& error) {
@@ -231,7 +228,7 @@ class InferCommand {
   const std::unique_ptr<MeasurementInference> session_;
   const Eigen::VectorXd known_;
   const Asked asked_;  // of each file
-  const bool is_stream_, names_missing_, diagnoses_;
+  const bool is_stream_, tests_model_, diagnoses_;
   const InferredPrinter printer_;
   InferHistory history_;
   const std::string page_;

@@ -66,17 +66,12 @@ Asked describeAsked(const ReplayArguments& arguments) {
   return asked;
 }
 
-/// Says what the model most likely lacks, where it does not fit.
-void nameMissing(const InferenceSource& source, Replay& replay) {
-  InferredMeasurement& inferred = replay.inferred;
-  if (inferred.fault.empty() && isMismatch(selectEstimate(inferred).statuses)) {
-    const MeasurementReader& reader = source.getReader();
-    const MeasuredWindow& from = replay.options.from;
-    const Table table = readTable(from.file.string(), reader.listColumns(), MissingCells::kKeep);
-    const TimedRecording timed = readTimedRecording(reader, table, from.start, replay.options.known);
-    inferred.missing =
-        findMissingTerm(timed.getExperiment(source.getExperiment()), timed.recording, inferred);
-  }
+/// Asks what the model lacks.
+void testModel(const InferenceSource& source, Replay& replay) {
+  const MeasurementReader& reader = source.getReader();
+  const MeasuredWindow& from = replay.options.from;
+  const Table table = readTable(from.file.string(), reader.listColumns(), MissingCells::kKeep);
+  twinmap::testModel(reader, table, from.start, replay.options.known, replay.inferred);
 }
 
 }  // namespace
@@ -86,7 +81,7 @@ void replay(const ReplayArguments& arguments) {
   const InferenceSource source(arguments.run);
   Replay replay = replayMeasurement(source, chooseOptions(arguments, source));
   replay.inferred.asked = describeAsked(arguments);
-  nameMissing(source, replay);
+  testModel(source, replay);
   const fs::path folder = chooseFolder(arguments);
   writeReplay(folder, source.getReader(), replay);
   waiting.clear();

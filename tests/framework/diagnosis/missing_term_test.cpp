@@ -1,0 +1,91 @@
+#include "framework/diagnosis/missing_term.hpp"
+
+#include <gtest/gtest.h>
+
+#include "framework/inference/measurement/direct_inference.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
+#include "tests/framework/diagnosis/measured_cart.hpp"
+
+namespace twinmap {
+namespace {
+
+using Statuses = std::vector<std::string>;
+
+/// The cart's measurement, inferred and tested.
+struct TestedCart {
+  ExperimentSpec experiment;
+  InferredMeasurement inferred;
+
+  Statuses listStatuses() const { return twinmap::listStatuses(inferred); }
+  std::string describe() const {
+    return describeTrust(inferred, experiment.model.parameters,
+                         MeasurementReader(experiment).getExtractor().getInfos());
+  }
+};
+
+TestedCart testCart(const Eigen::VectorXd& features, const std::vector<std::string>& overrides = {}) {
+  TestedCart cart{loadExperiment(kCart, overrides), {}};
+  const MeasurementReader reader(cart.experiment);
+  cart.inferred = DirectInference(reader).infer(features, {});
+  testModel(cart.experiment, {makeLayout(cart.experiment), {features}, {}}, cart.inferred);
+  return cart;
+}
+
+TEST(MissingTerm, IsNoneWhereNothingIsMissing) {
+  const TestedCart cart = testCart(measureCart(kSound));
+  EXPECT_EQ(cart.listStatuses(), Statuses{"ok"});
+  ASSERT_TRUE(cart.inferred.model_test);
+  EXPECT_EQ(cart.inferred.findMissing(), nullptr);
+  ASSERT_TRUE(cart.inferred.model_test->unnoticed);
+  EXPECT_GT(cart.inferred.model_test->unnoticed->shift, 1.0);
+  EXPECT_NE(cart.describe().find("could go unnoticed: "), std::string::npos);
+}
+
+TEST(MissingTerm, IsNamedThoughNoiseWouldExplainTheMeasurement) {
+  const TestedCart cart = testCart(measureCart("F - k3*x^3 - 0.004*tanh(x_dot/0.01)"));
+  const MissingTerm* missing = cart.inferred.findMissing();
+  ASSERT_NE(missing, nullptr);
+  EXPECT_EQ(cart.listStatuses(), Statuses{"missing_term"});
+  EXPECT_GT(cart.inferred.posterior->fit->test.calcPValue(), kMismatchLevel);
+  EXPECT_GT(missing->log_evidence, 3.0);
+  EXPECT_LT(missing->shifts[1], -1.0);  // the damping had taken up the friction
+  EXPECT_NE(cart.describe().find("d would fall by"), std::string::npos);
+}
+
+TEST(MissingTerm, GoesBeforeNoiseOfAnotherKind) {
+  const Eigen::VectorXd features = measureCart("F - k3*x^3 - 0.007*tanh(x_dot/0.01)");
+  const Statuses of_noise =
+      listStatuses(DirectInference(MeasurementReader(loadExperiment(kCart, {}))).infer(features, {}));
+  ASSERT_NE(of_noise, Statuses{"ok"});
+  ASSERT_NE(of_noise, Statuses{"model_mismatch"});
+  const TestedCart cart = testCart(features);
+  EXPECT_EQ(cart.listStatuses(), Statuses{"missing_term"});
+  EXPECT_TRUE(cart.inferred.findMissing()->explains);
+}
+
+TEST(MissingTerm, IsNotNamedWhereTheNoiseIsColoured) {
+  const TestedCart cart =
+      testCart(measureCart(kSound, 0, {"noise.correlation={x: {autoregression: [0.7]}}"}));
+  EXPECT_EQ(cart.listStatuses(), Statuses{"noise_coloured"});
+}
+
+TEST(MissingTerm, ExplainsAMisfitAsWell) {
+  const TestedCart cart = testCart(measureCart(kWithFriction));
+  EXPECT_EQ(cart.listStatuses().front(), "model_mismatch");
+  ASSERT_NE(cart.inferred.findMissing(), nullptr);
+  EXPECT_EQ(cart.inferred.findMissing()->term, "coulomb.x");
+  EXPECT_GT(cart.inferred.findMissing()->share, 0.9);
+}
+
+TEST(MissingTerm, IsNotAskedForWithoutASimulation) {
+  const Eigen::VectorXd features = measureCart(kSound);
+  InferredMeasurement by_map;
+  by_map.by_estimator.mean = kTrueCart;
+  const ExperimentSpec experiment = loadExperiment(kCart, {});
+  testModel(experiment, {makeLayout(experiment), {features}, {}}, by_map);
+  EXPECT_FALSE(by_map.model_test);
+}
+
+}  // namespace
+}  // namespace twinmap
