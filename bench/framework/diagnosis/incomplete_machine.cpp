@@ -53,13 +53,14 @@ std::size_t choose(const ScoredCandidates& scored, const std::string& term) {
 
 }  // namespace
 
-MachineMaker::MachineMaker(const std::string& file, std::uint64_t seed)
+MachineMaker::MachineMaker(const std::string& file, std::uint64_t seed, const Ratios& ratios)
     : model_(followNoise(readExperimentWithSignals(loadExperimentTree(file)))),
       layout_(makeLayout(model_)),
       extractor_(makeExtractor(model_, layout_)),
       noise_(model_.noise, layout_),
       random_(seed, RandomPurpose::kTestDesign),
       seed_(seed),
+      ratios_(ratios),
       shared_(static_cast<Index>(model_.model.parameters.size())) {}
 
 std::vector<std::string> MachineMaker::listTerms() const {
@@ -129,7 +130,7 @@ double MachineMaker::drawUniform(int test, Index channel) const {
 }
 
 double MachineMaker::drawRatio(int test) const {
-  return std::exp(std::log(1.2) + drawUniform(test, 100) * std::log(25.0));
+  return ratios_.least * std::pow(ratios_.most / ratios_.least, drawUniform(test, 100));
 }
 
 /// Of the model's parameters, away from the bounds.

@@ -20,10 +20,15 @@ struct IncompleteMachine {
   bool is_alike = false;  ///< whether another term does the same to within what evidence could tell
 };
 
+/// Of chi-square over its mean, after the best fit without a term: between these, uniform in the logarithm.
+struct Ratios {
+  double least = 1.2, most = 30.0;
+};
+
 /// Draws machines from the bounds of a model, and measures them.
 class MachineMaker {
  public:
-  MachineMaker(const std::string& file, std::uint64_t seed);
+  MachineMaker(const std::string& file, std::uint64_t seed, const Ratios& ratios = {});
 
   const ExperimentSpec& getModel() const { return model_; }
   const ResponseLayout& getLayout() const { return layout_; }
@@ -33,8 +38,8 @@ class MachineMaker {
   /// random force on it.
   std::vector<std::string> listTerms() const;
 
-  /// The machine number `test` with a term, whose size is such that chi-square, after the best fit without
-  /// it, is 1.2 to 30 times its mean, uniform in the logarithm; the model itself for "none". None where the
+  /// The machine number `test` with a term of such a size that chi-square is between the ratios; the model
+  /// itself for "none". None where the
   /// term does nothing there.
   std::optional<IncompleteMachine> make(const std::string& term, int test) const;
 
@@ -57,6 +62,7 @@ class MachineMaker {
   const ResponseNoise noise_;
   const RandomStream random_;
   const std::uint64_t seed_;
+  const Ratios ratios_;
   const Eigen::Index shared_;
 };
 
