@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
+#include <iterator>
 #include <set>
 
 #include "framework/base/text/nearest_name.hpp"
@@ -131,6 +133,21 @@ std::string makeFlowMap(const DerivedEntry& entry) {
   return "{value: " + entry.expression + (entry.unit.empty() ? "" : ", unit: " + entry.unit) + "}";
 }
 
+/// Whether one of the gradients (q x p) at the point is, in widths, that of the combination or of a function
+/// of it.
+bool isAmong(const Combination& combination, const MatrixXd& gradients, const VectorXd& point,
+             const VectorXd& widths) {
+  constexpr double kSame = 1e-6;  // central differences of a smooth function
+  const VectorXd own = calcGradient(combination, point).cwiseProduct(widths).normalized();
+  for (Index q = 0; q < gradients.rows(); ++q) {
+    const VectorXd other = widths.cwiseProduct(gradients.row(q).transpose());
+    if (std::abs(own.dot(other)) > (1.0 - kSame) * other.norm()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Ridge> nameRidges(const std::vector<FlatDirections>& flat,
@@ -207,11 +224,20 @@ std::string makeDerivedYaml(const std::vector<Ridge>& ridges, const std::vector<
 }
 
 std::vector<std::string> adviseOnRidges(const std::vector<Ridge>& ridges,
-                                        const std::vector<ParameterSpec>& parameters) {
+                                        const std::vector<ParameterSpec>& parameters,
+                                        const DerivedQuantities* derived, const VectorXd& point) {
+  const MatrixXd gradients = derived != nullptr && point.size() == derived->countParameters()
+                                 ? derived->calcGradients(point)
+                                 : MatrixXd();
   std::vector<std::string> sentences;
   for (const Ridge& ridge : ridges) {
+    Ridge asked = ridge;
+    asked.combinations.clear();
+    std::copy_if(
+        ridge.combinations.begin(), ridge.combinations.end(), std::back_inserter(asked.combinations),
+        [&](const Combination& one) { return !isAmong(one, gradients, point, calcWidths(parameters)); });
     std::string entries;
-    for (const DerivedEntry& entry : listDerived({ridge}, parameters)) {
+    for (const DerivedEntry& entry : listDerived({asked}, parameters)) {
       entries += (entries.empty() ? "" : ", ") + entry.name + ": " + makeFlowMap(entry);
     }
     sentences.push_back(describeRidge(ridge, parameters) +

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/ridges/combination.hpp"
 #include "framework/estimation/ridges/flat_directions.hpp"
 
@@ -44,9 +45,12 @@ std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, c
 /// one. With the units of constants, and with sums that hold near the best fit alone, as such.
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters);
 
-/// A sentence for each ridge that has combinations, with what to add to the experiment file for them.
+/// A sentence for each ridge that has combinations, with what to add to the experiment file for those that it
+/// does not derive yet: `derived` (null: none), with the gradients of its quantities at a point.
 std::vector<std::string> adviseOnRidges(const std::vector<Ridge>& ridges,
-                                        const std::vector<ParameterSpec>& parameters);
+                                        const std::vector<ParameterSpec>& parameters,
+                                        const DerivedQuantities* derived = nullptr,
+                                        const Eigen::VectorXd& point = {});
 
 /// A combination as an entry below the key `derived`.
 struct DerivedEntry {

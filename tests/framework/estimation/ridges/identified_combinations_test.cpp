@@ -84,6 +84,27 @@ TEST(IdentifiedCombinations, NameAProduct) {
   EXPECT_EQ(makeDerivedYaml(ridges, parameters), "derived:\n  m_L: {value: m * L, unit: kg m}\n");
 }
 
+/// k / m is that of the file upside down; c / m is not there.
+TEST(IdentifiedCombinations, AreNotAdvisedWhereTheFileDerivesThem) {
+  ExperimentSpec experiment;
+  experiment.model.parameters = {makeParameter("k", "N/m", 5, 15), makeParameter("m", "kg", 1, 2),
+                                 makeParameter("c", "N s/m", 0.1, 0.4)};
+  const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
+  const std::vector<Ridge> ridges =
+      findIn(parameters, [](const VectorXd& x) { return Eigen::Vector2d(x[0] / x[1], x[2] / x[1]).eval(); });
+  EXPECT_NE(adviseOnRidges(ridges, parameters)[0].find("{value: k / m, unit: 1/s2}"), std::string::npos);
+  DerivedSpec inverse;
+  inverse.name.text = "m_per_k";
+  inverse.value.text = "m / k";
+  experiment.derived = {inverse};
+  const DerivedQuantities derived(experiment);
+  const std::string advice = adviseOnRidges(ridges, parameters, &derived, Eigen::Vector3d(8.0, 1.5, 0.2))[0];
+  EXPECT_EQ(
+      advice,
+      "of k, m, c the features determine only k / m, k / c; reported with 'derived: {k_per_c: {value: k / c, "
+      "unit: 1/s}}'");
+}
+
 TEST(IdentifiedCombinations, NameAQuotient) {
   const std::vector<ParameterSpec> parameters{makeParameter("k", "N/m", 5, 15),
                                               makeParameter("m", "kg", 1, 2)};
