@@ -16,6 +16,7 @@ struct Beside {
 constexpr Beside kBeside[] = {
     // it cannot be done, or was, and did not help
     {"Refine the estimates", Notice::kCannotRefine},
+    {"Refine the estimates", Notice::kNoLimit},  // without noise
     {"Refine the estimates", Notice::kFewRefined},
     {kDone, Notice::kIntervalsTooNarrow},
     {kDone, Notice::kAboveLimit},

@@ -180,6 +180,7 @@ TEST(Warnings, LengthScalesAtTheirUpperBoundAreNoReasonToWarn) {
 /// Phrases of which the warnings of one run hold one at most.
 constexpr std::pair<const char*, const char*> kContradictions[] = {
     {"refine=always", "set refine=never"},
+    {"refine=always", "the noise of a feature is 0"},
     {"refine=always", "passed the test of their refinement"},
     {"refine=always", "the estimates are refined"},
     {"Nothing need be done: the estimates are refined", "contain too few of the true values"},
@@ -209,6 +210,7 @@ std::vector<Change> listChanges() {
   return {method(kSamples),
           method(kSamples / 2),
           note(makeWarning(Notice::kCannotRefine, "no noise")),
+          note(makeWarning(Notice::kNoLimit)),
           note(makeWarning(Notice::kSurrogateUncalibrated)),
           note(makeWarning(
               Notice::kSurrogateRescaled, "k",
