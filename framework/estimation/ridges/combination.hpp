@@ -39,12 +39,12 @@ std::string makeName(const Combination& combination, const std::vector<Parameter
 /// Whether its terms have one unit, or a parameter states none.
 bool hasOneUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
-/// The unit of its first term, whose constant is 1, in SI base units: "kg m", "1/s2"; "" where a parameter
-/// states none, and where it has none.
+/// The unit of its first term, whose constant is 1, in SI base units: "kg m", "1/s2". "" where a parameter
+/// states none, or it has none.
 std::string findUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
-/// The units of the constants of terms of other units: "0.4 in m" of m * c + 0.4 * M with masses m and M;
-/// else "".
+/// The units of constants in terms of other units, else "". It is "0.4 in m" of m * c + 0.4 * M with masses m
+/// and M.
 std::string describeConstants(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
 }  // namespace twinmap

@@ -51,9 +51,8 @@ MeanKnown average(const std::vector<KnownThere>& known, Index parameters) {
 }
 
 /// The share of a flat direction's square from which on each parameter takes part (p). What is nearly as flat
-/// mixes with what is flat, so that it is 3 %. Where all else is well determined less matters too: a
-/// parameter takes part if flat directions move it by three times what else is unknown of it, and by 1 % of
-/// its width.
+/// mixes with what is flat, so that it is 3 %. It is less of a parameter that flat directions move by three
+/// times what else is unknown of it. They must move it by 1 % of its width.
 VectorXd calcLeastShares(const MeanKnown& mean) {
   constexpr double kTakesPart = 0.03, kThreeTimes = 9.0, kPercent = 1e-4;
   return (kOfBox * kThreeTimes * mean.determined).cwiseMax(kOfBox * kPercent).cwiseMin(kTakesPart);

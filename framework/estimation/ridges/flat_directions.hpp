@@ -19,7 +19,7 @@ struct FlatDirections {
 /// The flat directions of the Fisher information, in groups that have no parameter in common. `information`:
 /// of each point (p x p, per width; empty where unknown); `points`: p x n. A direction is flat where the data
 /// leave more than half of the standard deviation that the bounds allow. A parameter takes part with 3 % of a
-/// flat direction's square on average, with less, down to .12 %, where it is well determined but for that. Of
+/// flat direction's square on average. One that is well determined but for that takes part from .12 % on. Of
 /// a group the points count that have the commonest number of flat directions in it; a group for which these
 /// are fewer than half of all, or than 3, is left out, and so is one of a single parameter. Cost: 9 p^3 flops
 /// a point.

@@ -31,8 +31,8 @@ class ChosenFunctions {
   ChosenFunctions(const FlatDirections& flat, const std::vector<ParameterSpec>& parameters)
       : flat_(flat), widths_(calcWidths(parameters)), bases_(flat.changes.size()) {}
 
-  /// Whether a gradient has a part on average that those of the chosen do not span: twice what functions that
-  /// fit within `largest` may be off by, and a hundredth.
+  /// Whether a gradient has a part on average that those of the chosen do not span. It is to be twice what
+  /// functions that fit within `largest` may be off by, and a hundredth.
   bool isIndependent(const Combination& combination, double largest) const {
     constexpr double kTwice = 2.0, kLeast = 0.01;
     double rest = 0.0;

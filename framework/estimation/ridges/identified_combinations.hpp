@@ -16,7 +16,8 @@ struct Ridge {
   /// The simplest independent functions of them that are determined; at most g - r, fewer where no simple
   /// ones fit.
   std::vector<Combination> combinations;
-  /// Where those are fewer, sums of the parameters that are determined near the best fit alone.
+  /// Sums of the parameters that are determined near the best fit alone, in the place of those that are
+  /// lacking.
   std::vector<Combination> local{};
 };
 
@@ -45,8 +46,8 @@ std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, c
 /// one. With the units of constants, and with sums that hold near the best fit alone, as such.
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters);
 
-/// A sentence for each ridge that has combinations, with what to add to the experiment file for those that it
-/// does not derive yet: `derived` (null: none), with the gradients of its quantities at a point.
+/// A sentence for each ridge that has combinations, with what to add to the experiment file. What that
+/// derives already (`derived`; null: nothing) is left out, as its gradients at `point` tell.
 std::vector<std::string> adviseOnRidges(const std::vector<Ridge>& ridges,
                                         const std::vector<ParameterSpec>& parameters,
                                         const DerivedQuantities* derived = nullptr,

@@ -29,8 +29,8 @@ MatrixXd findUnnamed(const FlatDirections& flat, const std::vector<Combination>&
   return linalg::calcSymmetricEigen(taken).vectors.leftCols(taken.rows() - flat.dimension - named);
 }
 
-/// Subtracts columns of each other until each has a row of its own where it is 1 and all others are 0, so
-/// that sums are short: the largest entries come first.
+/// Subtracts columns of each other until each has a row of its own where it is 1 and all others are 0. So
+/// sums are short; the largest entries come first.
 void reduceColumns(MatrixXd& columns) {
   for (Index k = 0; k < columns.cols(); ++k) {
     Index row = 0, column = 0;

@@ -36,7 +36,7 @@ VectorXd calcSecondDifferences(const VectorXd& values) {
   return values.tail(n) - 2.0 * values.segment(1, n) + values.head(n);
 }
 
-/// Least squares of the second differences over the modulus, for the turns that the last one makes; they
+/// Least squares of the second differences over the modulus, for the turns that the last one makes. They
 /// begin with the range, a little less than the modulus.
 double findBySmoothness(const VectorXd& times, const VectorXd& values) {
   constexpr int kIterations = 3;

@@ -13,8 +13,8 @@ bool isMismatch(const std::vector<std::string>& statuses);
 
 bool hasStatus(const std::vector<std::string>& statuses, Notice notice);
 
-/// Whether the remedy of a status goes against that of another beside it, or is the same in other words:
-/// bounds are not to be widened where they are to exclude, nor twice.
+/// Whether the remedy of a status goes against that of another beside it, or is the same in other words.
+/// Bounds are not to be widened where they are to exclude, nor twice.
 bool isAdvisedElse(const std::string& status, const std::vector<std::string>& statuses);
 
 /// The status with its numbers, then for each thing that is wrong a line that says what, and one that says

@@ -79,8 +79,8 @@ bool areAllAtBounds(const InferredMeasurement& inferred, const std::vector<Param
          std::all_of(parameters.begin(), parameters.end(), lies_there);
 }
 
-/// Whether more excitation is not what helps a parameter: a ridge says what is determined of it, or its
-/// sd is the estimator's, not what the measurement allows.
+/// Whether more excitation is not what helps a parameter. A ridge says what is determined of it, or its sd is
+/// the estimator's, not what the measurement allows.
 bool isForOthers(const InferredMeasurement& inferred, Index parameter) {
   const bool in_ridge = std::any_of(inferred.ridges.begin(), inferred.ridges.end(), [&](const Ridge& ridge) {
     return std::find(ridge.parameters.begin(), ridge.parameters.end(), parameter) != ridge.parameters.end();
@@ -213,7 +213,8 @@ bool isMismatch(const std::optional<Trust>& trust) {
                       trust->statuses.end();
 }
 
-/// Where a trust model finds more than noise: all over, or in one stretch beside which the rest fits.
+/// The place of what a trust model finds beyond noise: all over, or in one stretch beside which the rest
+/// fits.
 std::string describeTrusted(const Trust& trust, const std::vector<FeatureInfo>& features) {
   const bool fits_beside = trust.chi_square_p_value >= kMismatchLevel;
   return fmt::format("{}, {}", fits_beside ? "all but one stretch of the recording fits" : kNoValuesFit,
