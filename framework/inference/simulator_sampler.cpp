@@ -184,7 +184,16 @@ MatrixXd SimulatorSampler::listRidgePoints(const PosteriorEstimate& posterior) c
   }
   const bool may_have = !Prior(getUnknown(), getModelSpec().priors).isUniform() ||
                         mayHaveRidges(draws, getModelSpec().parameters);
-  return may_have ? MatrixXd(draws.points(Eigen::all, chooseDraws(draws.weights))) : MatrixXd();
+  if (!may_have) {
+    return {};
+  }
+  MatrixXd chosen = draws.points(Eigen::all, chooseDraws(draws.weights));
+  if (!posterior.fit || posterior.fit->best.size() != chosen.rows()) {
+    return chosen;
+  }
+  MatrixXd points(chosen.rows(), chosen.cols() + 1);
+  points << posterior.fit->best, chosen;
+  return points;
 }
 
 std::vector<Ridge> SimulatorSampler::findRidges(const PosteriorEstimate& posterior,

@@ -10,6 +10,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/results/warnings_beside.hpp"
 
 namespace twinmap {
 namespace {
@@ -52,10 +53,13 @@ bool areRefined(const RunSummary& run) {
                      });
 }
 
-/// The one thing to do about errors that are larger than they need be.
+/// The one thing to do about errors that are larger than they need be. Refinement that was tried is not.
 std::string adviseOnAccuracy(const RunSummary& run) {
-  return areRefined(run) ? "Compare with the sampled posterior of a measurement: twinmap infer --posterior."
-                         : "Refine the estimates on the simulator: refine=always.";
+  const bool was_tried =
+      std::any_of(run.evaluation.methods.begin(), run.evaluation.methods.end(),
+                  [](const MethodSummary& summary) { return summary.method == "refined"; });
+  return was_tried ? "Compare with the sampled posterior of a measurement: twinmap infer --posterior."
+                   : "Refine the estimates on the simulator: refine=always.";
 }
 
 /// 95 % intervals that hold too few or too many true values: further from 0.95 than three standard errors.
@@ -103,11 +107,15 @@ void appendSeveral(const RunSummary& run, std::vector<Warning>& warnings) {
   }
 }
 
-void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
+/// Whether the errors are mostly the estimator's own, not what the measurement leaves.
+bool isFarFromLimit(const RunSummary& run, std::size_t p) {
   constexpr double kFar = 1.5;
+  return run.evaluation.metrics[p].ratio_to_limit > kFar && !isMultimodal(run, p);
+}
+
+void appendLimit(const RunSummary& run, std::vector<Warning>& warnings) {
   const auto ratio = [&](std::size_t p) { return run.evaluation.metrics[p].ratio_to_limit; };
-  const std::string far =
-      listParameters(run, ratio, [&](std::size_t p) { return ratio(p) > kFar && !isMultimodal(run, p); });
+  const std::string far = listParameters(run, ratio, [&](std::size_t p) { return isFarFromLimit(run, p); });
   if (!far.empty()) {
     warnings.push_back(makeWarning(Notice::kAboveLimit, far, adviseOnAccuracy(run)));
   }
@@ -139,7 +147,8 @@ bool isUndetermined(const RunSummary& run, std::size_t p) {
   return run.evaluation.identifiability && run.evaluation.identifiability->isUndetermined(Index(p));
 }
 
-/// Inferred standard deviations close to that of the prior: nothing was learnt.
+/// Inferred standard deviations close to that of the prior: nothing was learnt, though the estimator is as
+/// good as the measurement.
 void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
   constexpr double kUninformed = 0.7, kPercent = 100.0;
   const auto share = [&](std::size_t p) {
@@ -152,7 +161,8 @@ void appendUninformed(const RunSummary& run, std::vector<Warning>& warnings) {
   };
   std::vector<std::string> uninformed;
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
-    if (share(p) > kUninformed && !isUndetermined(run, p) && !isMultimodal(run, p)) {
+    if (share(p) > kUninformed && !isUndetermined(run, p) && !isMultimodal(run, p) &&
+        !isFarFromLimit(run, p)) {
       uninformed.push_back(fmt::format("{} ({:.0f} %)", run.parameters[p].name.text,
                                        kPercent * std::max(0.0, 1.0 - share(p))));
     }
@@ -219,30 +229,6 @@ void appendTraining(const RunSummary& run, std::vector<Warning>& warnings) {
   }
 }
 
-/// Of estimates that are refined, what it advises has been done.
-void dropRefinement(std::vector<Warning>& warnings) {
-  for (Warning& warning : warnings) {
-    const std::size_t remedy = warning.text.find("\n  Refine the estimates");
-    if (remedy != std::string::npos) {
-      warning.text = warning.text.substr(0, remedy) + "\n  Nothing need be done: the estimates are refined.";
-    }
-  }
-}
-
-/// A surrogate whose errors are not known is not advised.
-void dropUncalibrated(std::vector<Warning>& warnings) {
-  const std::string doubt = getNotice(Notice::kSurrogateUncalibrated).happened;
-  const bool is_doubted = std::any_of(warnings.begin(), warnings.end(), [&](const Warning& warning) {
-    return warning.text.rfind(doubt, 0) == 0;
-  });
-  for (Warning& warning : warnings) {
-    const std::size_t remedy = warning.text.find("\n  Use the surrogate itself");
-    if (is_doubted && remedy != std::string::npos) {
-      warning.text.resize(remedy);
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> collectWarnings(const RunSummary& run) {
@@ -257,10 +243,7 @@ std::vector<std::string> collectWarnings(const RunSummary& run) {
   appendTraining(run, warnings);
   appendGain(run, warnings);
   appendRelativeToRange(run, warnings);
-  if (areRefined(run)) {
-    dropRefinement(warnings);
-  }
-  dropUncalibrated(warnings);
+  mendRemedies(warnings, areRefined(run));
   return listTexts(std::move(warnings));
 }
 

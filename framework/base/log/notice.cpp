@@ -123,7 +123,7 @@ const std::vector<NoticeText> kAccuracy{
      "parameters."},
     {Notice::kIntervalsTooWide, "intervals_too_wide", false, kInfo,
      "the 95 % intervals contain more of the true values than they claim: {0}",
-     "Nothing need be done: the intervals are conservative.",
+     "Nothing need be done: these intervals are conservative.",
      "The estimator takes its errors for larger than they are."},
     {Notice::kMultimodalTests, "multimodal_tests", false, kInfo,
      "fraction of the test samples with several separate estimates: {0}",
@@ -230,7 +230,8 @@ const std::vector<NoticeText> kTraining{
      "The ranks of the true values among the draws are not uniform: the posteriors are biased or of the "
      "wrong "
      "width."},
-    {Notice::kNoCalibration, "no_calibration", false, kInfo, "posteriors are not calibrated: {0}",
+    {Notice::kNoCalibration, "no_calibration", false, kInfo,
+     "the calibration of posteriors is not tested: {0}",
      "Leave out evaluation.calibration, or set 'inverse_map: surrogate' or 'none'.",
      "Simulation-based calibration needs a surrogate, or no map at all, and enough reliable posteriors."}};
 
@@ -271,6 +272,22 @@ const NoticeText& getNotice(Notice notice) {
   const NoticeText& found = listNotices().at(static_cast<std::size_t>(notice));
   assert(found.notice == notice);
   return found;
+}
+
+bool saysNotice(const std::string& text, Notice notice) {
+  const std::string pattern = getNotice(notice).happened;
+  std::size_t at = 0;
+  for (std::size_t from = 0; from <= pattern.size();) {
+    const std::size_t open = std::min(pattern.find('{', from), pattern.size());
+    const std::string part = pattern.substr(from, open - from);
+    const std::size_t found = text.find(part, at);
+    if (found == std::string::npos || (from == 0 && found != 0)) {
+      return false;
+    }
+    at = found + part.size();
+    from = open == pattern.size() ? open + 1 : pattern.find('}', open) + 1;
+  }
+  return true;
 }
 
 bool isRemark(const std::string& text) {

@@ -103,6 +103,9 @@ std::string describeNotice(Notice notice, const Arguments&... arguments) {
                               : happened + "\n  " + fmt::format(fmt::runtime(text.remedy), arguments...);
 }
 
+/// Whether a text is that of a notice, whatever fills its places.
+bool saysNotice(const std::string& text, Notice notice);
+
 /// Whether the text of a warning says that nothing need be done: a remark.
 bool isRemark(const std::string& text);
 

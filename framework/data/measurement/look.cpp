@@ -83,12 +83,14 @@ void findShortSteps(const VectorXd& steps, ColumnLook& look, const VectorXd& tim
   }
 }
 
+constexpr double kLongestStep = 1.5;  // in median ones; longer ones are gaps
+
 void lookAtSteps(const VectorXd& times, ColumnLook& look) {
-  constexpr double kLongest = 1.5, kMost = 0.9;
+  constexpr double kMost = 0.9;
   look.step = calcMedianStep(times);
   VectorXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
   for (Index i = 0; i < steps.size(); ++i) {
-    if (steps[i] > kLongest * look.step) {
+    if (steps[i] > kLongestStep * look.step) {
       add(look.gaps, times[i]);
       look.gaps.times.push_back(times[i]);
       look.longest_gap = std::max(look.longest_gap, steps[i]);
@@ -234,6 +236,20 @@ VectorXd lookAtTurns(const VectorXd& times, const VectorXd& values, ColumnLook& 
   return values;
 }
 
+/// Whether gaps and rows without a number are the same: each gap holds such rows, and they are in gaps.
+bool areInGaps(const VectorXd& times, const std::vector<Index>& there, const ColumnLook& look) {
+  Index held = 0, holding = 0;
+  for (std::size_t k = 1; k < there.size(); ++k) {
+    const Index between = there[k] - there[k - 1] - 1;
+    const double step = times[there[k]] - times[there[k - 1]];
+    if (between > 0 && step > kLongestStep * look.step) {
+      held += between;
+      ++holding;
+    }
+  }
+  return holding == look.gaps.count && held == look.missing;
+}
+
 ColumnLook lookAt(const Column& column, const VectorXd& times) {
   ColumnLook look;
   look.name = column.name;
@@ -256,6 +272,7 @@ ColumnLook lookAt(const Column& column, const VectorXd& times) {
   look.largest = values.maxCoeff();
   look.is_constant = look.least == look.largest;
   lookAtSteps(at, look);
+  look.gaps_are_missing = look.missing > 0 && areInGaps(times, there, look);
   if (!look.is_constant) {
     look.resolution = findResolution(values);
     lookAtNoise(at, lookAtTurns(at, values, look), look);

@@ -23,13 +23,15 @@ struct ColumnLook {
   Eigen::Index samples = 0;         ///< that are there
   Eigen::Index missing = 0;         ///< rows without a number
   double least = 0.0, largest = 0.0;
-  double step = 0.0;                  ///< s, median; of the samples that are there
-  double step_spread = 0.0;           ///< largest deviation from it of 9 steps in 10, over it
-  FoundSamples gaps;                  ///< steps of more than 1.5 median ones
-  double longest_gap = 0.0;           ///< s
-  FoundSamples short_steps;           ///< of less than a fifth of those about them: double triggers?
-  double shortest_step = 0.0;         ///< s, of these
-  FoundSamples spikes;                ///< more than 20 noise standard deviations off their neighbours
+  double step = 0.0;         ///< s, median; of the samples that are there
+  double step_spread = 0.0;  ///< largest deviation from it of 9 steps in 10, over it
+  FoundSamples gaps;         ///< steps of more than 1.5 median ones
+  double longest_gap = 0.0;  ///< s
+  bool gaps_are_missing =
+      false;                   ///< whether they are where rows have no number, and no such row is elsewhere
+  FoundSamples short_steps;    ///< of less than a fifth of those about them: double triggers?
+  double shortest_step = 0.0;  ///< s, of these
+  FoundSamples spikes;         ///< more than 20 noise standard deviations off their neighbours
   FoundSamples at_least, at_largest;  ///< samples in runs of 3 or more at the extremes
   FoundSamples turns;                 ///< jumps by a whole turn
   double turn = 0.0;                  ///< their size

@@ -27,6 +27,26 @@ std::string describeFirst(const FoundSamples& found, const char* what) {
                      found.count == 1 ? "" : "first at ", describeTime(found.first));
 }
 
+/// Rows without a number and gaps, once where they are the same.
+void addMissing(const ColumnLook& column, std::vector<std::string>& odd) {
+  const std::string missing = fmt::format("{} missing", column.missing);
+  const std::string gaps =
+      column.gaps.count == 0
+          ? ""
+          : describeFirst(column.gaps, "gap") +
+                fmt::format(", the longest {} s", toShortText(column.longest_gap, kFewDigits));
+  if (column.gaps_are_missing) {
+    odd.push_back(missing + " in " + gaps);
+    return;
+  }
+  if (column.missing > 0) {
+    odd.push_back(missing);
+  }
+  if (!gaps.empty()) {
+    odd.push_back(gaps);
+  }
+}
+
 /// What is worth a look, a phrase each, with what to do in a recording that is to be inferred from.
 std::vector<std::string> listOddities(const ColumnLook& column) {
   constexpr double kJitter = 0.01;
@@ -34,13 +54,7 @@ std::vector<std::string> listOddities(const ColumnLook& column) {
   if (column.is_constant) {
     odd.emplace_back("the same everywhere");
   }
-  if (column.missing > 0) {
-    odd.push_back(fmt::format("{} missing", column.missing));
-  }
-  if (column.gaps.count > 0) {
-    odd.push_back(describeFirst(column.gaps, "gap") +
-                  fmt::format(", the longest {} s", toShortText(column.longest_gap, kFewDigits)));
-  }
+  addMissing(column, odd);
   if (column.short_steps.count > 0) {
     odd.push_back(describeFirst(column.short_steps, "short step") +
                   fmt::format(", the shortest {} s: double triggers?", toShortText(column.shortest_step, 2)));

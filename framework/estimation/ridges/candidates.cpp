@@ -95,8 +95,7 @@ double roundCoefficient(double value) {
       return std::copysign(simple, value);
     }
   }
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
-  return unit * std::round(value / unit);
+  return roundToThreeDigits(value);
 }
 
 /// On the ridge of one measurement J + m L^2 is J + p L too, with the value p of m L there: units tell which
@@ -173,13 +172,6 @@ TermGradients calcTermGradients(const FlatDirections& flat, const std::vector<Pa
   return result;
 }
 
-void divideByFirst(Combination& sum) {
-  const double first = sum.coefficients.front();
-  for (double& coefficient : sum.coefficients) {
-    coefficient /= first;
-  }
-}
-
 /// The best coefficients of a sum of terms; all of them matter, or it is another sum.
 Combination fitSum(const TermGradients& gradients, const std::vector<Index>& chosen) {
   constexpr double kMatters = 0.02;  // of the largest, in scaled terms
@@ -231,6 +223,28 @@ double calcResidual(const Combination& combination, const FlatDirections& flat,
            gradient.squaredNorm();
   }
   return std::sqrt(sum / static_cast<double>(flat.points.cols()));
+}
+
+bool isConstant(const Combination& combination, const FlatDirections& flat,
+                const std::vector<ParameterSpec>& parameters) {
+  constexpr double kShare = 0.05, kThreeTimes = 3.0;
+  const VectorXd widths = calcWidths(parameters);
+  const Index n = flat.points.cols();
+  const auto count = static_cast<double>(n);
+  VectorXd values(n);
+  VectorXd squares = VectorXd::Zero(static_cast<Index>(flat.parameters.size()));  // of the gradients
+  double unknown = 0.0;
+  for (Index i = 0; i < n; ++i) {
+    const VectorXd gradient = calcGradient(combination, flat.points.col(i))(flat.parameters);
+    const VectorXd in_widths = gradient.cwiseProduct(widths(flat.parameters));
+    values[i] = calcValue(combination, flat.points.col(i));
+    squares += gradient.cwiseAbs2() / count;
+    unknown += in_widths.dot(flat.determined[static_cast<std::size_t>(i)] * in_widths) / count;
+  }
+  const MatrixXd points = flat.points(flat.parameters, Eigen::all);
+  const VectorXd variances = (points.colwise() - points.rowwise().mean()).cwiseAbs2().rowwise().mean();
+  const double variance = (values.array() - values.mean()).square().mean();
+  return variance <= kShare * kShare * squares.dot(variances) + kThreeTimes * kThreeTimes * unknown;
 }
 
 std::vector<Candidate> findProducts(const FlatDirections& flat, const std::vector<ParameterSpec>& parameters,

@@ -33,4 +33,10 @@ std::vector<Candidate> findBaseParameters(const FlatDirections& flat,
 double calcResidual(const Combination& combination, const FlatDirections& flat,
                     const std::vector<ParameterSpec>& parameters);
 
+/// Whether the value of a combination is the same at points that all fit one measurement. Allowed are three
+/// times what is unknown of it, and a twentieth of what it would vary if its parameters varied as much, each
+/// on its own. A gradient that is slightly off everywhere adds up along a long ridge.
+bool isConstant(const Combination& combination, const FlatDirections& flat,
+                const std::vector<ParameterSpec>& parameters);
+
 }  // namespace twinmap

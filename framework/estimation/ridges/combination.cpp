@@ -132,6 +132,26 @@ VectorXd calcProductGradient(const VectorXi& exponents, const VectorXd& point) {
   return gradient;
 }
 
+void divideByFirst(Combination& sum) {
+  const double first = sum.coefficients.front();
+  for (double& coefficient : sum.coefficients) {
+    coefficient /= first;
+  }
+}
+
+double roundToThreeDigits(double value) {
+  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value))) - 2.0);
+  return unit * std::round(value / unit);
+}
+
+double calcValue(const Combination& combination, const VectorXd& point) {
+  double value = 0.0;
+  for (std::size_t k = 0; k < combination.terms.size(); ++k) {
+    value += combination.coefficients[k] * calcProduct(combination.terms[k], point);
+  }
+  return value;
+}
+
 VectorXd calcGradient(const Combination& combination, const VectorXd& point) {
   VectorXd gradient = VectorXd::Zero(point.size());
   for (std::size_t k = 0; k < combination.terms.size(); ++k) {
@@ -172,8 +192,26 @@ bool hasOneUnit(const Combination& combination, const std::vector<ParameterSpec>
 
 std::string findUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters) {
   std::vector<Dimension> dimensions;
-  const bool is_known = listDimensions(combination, parameters, dimensions);
-  return is_known && hasOneUnit(combination, parameters) ? makeUnit(dimensions.front()) : "";
+  return listDimensions(combination, parameters, dimensions) ? makeUnit(dimensions.front()) : "";
+}
+
+std::string describeConstants(const Combination& combination, const std::vector<ParameterSpec>& parameters) {
+  std::vector<Dimension> dimensions;
+  std::string text;
+  if (listDimensions(combination, parameters, dimensions)) {
+    for (std::size_t k = 1; k < dimensions.size(); ++k) {
+      Dimension constant = dimensions.front();
+      for (const auto& [base, power] : dimensions[k]) {
+        constant[base] -= power;
+      }
+      const std::string unit = makeUnit(dropZeros(constant));
+      if (!unit.empty()) {
+        text += (text.empty() ? "" : ", ") + toShortText(std::abs(combination.coefficients[k]), kDigits) +
+                " in " + unit;
+      }
+    }
+  }
+  return text;
 }
 
 }  // namespace twinmap

@@ -22,7 +22,12 @@ struct Combination {
 double calcProduct(const Eigen::VectorXi& exponents, const Eigen::VectorXd& point);
 Eigen::VectorXd calcProductGradient(const Eigen::VectorXi& exponents, const Eigen::VectorXd& point);
 
-/// The gradient (p) of a combination at a point (p).
+/// Makes the first coefficient 1.
+void divideByFirst(Combination& sum);
+double roundToThreeDigits(double value);
+
+/// The value of a combination at a point (p), and its gradient (p).
+double calcValue(const Combination& combination, const Eigen::VectorXd& point);
 Eigen::VectorXd calcGradient(const Combination& combination, const Eigen::VectorXd& point);
 
 /// As an expression of the experiment file: "m * L", "k / m", "k_1 + 0.36 * k_2".
@@ -34,8 +39,12 @@ std::string makeName(const Combination& combination, const std::vector<Parameter
 /// Whether its terms have one unit, or a parameter states none.
 bool hasOneUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
-/// Its unit in SI base units, "kg m", "1/s2"; "" where a parameter states none, where it has none, and for
-/// sums of different units.
+/// The unit of its first term, whose constant is 1, in SI base units: "kg m", "1/s2". "" where a parameter
+/// states none, or it has none.
 std::string findUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters);
+
+/// The units of constants in terms of other units, else "". It is "0.4 in m" of m * c + 0.4 * M with masses m
+/// and M.
+std::string describeConstants(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
 }  // namespace twinmap

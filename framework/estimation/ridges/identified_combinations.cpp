@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
+#include <iterator>
 #include <set>
 
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/estimation/ridges/candidates.hpp"
+#include "framework/estimation/ridges/local_sums.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -27,14 +31,15 @@ class ChosenFunctions {
   ChosenFunctions(const FlatDirections& flat, const std::vector<ParameterSpec>& parameters)
       : flat_(flat), widths_(calcWidths(parameters)), bases_(flat.changes.size()) {}
 
-  /// Whether a gradient has a part, a tenth on average, that those of the chosen do not span.
-  bool isIndependent(const Combination& combination) const {
-    constexpr double kNew = 0.1;
+  /// Whether a gradient has a part on average that those of the chosen do not span. It is to be twice what
+  /// functions that fit within `largest` may be off by, and a hundredth.
+  bool isIndependent(const Combination& combination, double largest) const {
+    constexpr double kTwice = 2.0, kLeast = 0.01;
     double rest = 0.0;
     for (std::size_t i = 0; i < bases_.size(); ++i) {
       rest += project(combination, i).norm();
     }
-    return rest > kNew * static_cast<double>(bases_.size());
+    return rest > std::max(kTwice * largest, kLeast) * static_cast<double>(bases_.size());
   }
 
   void add(const Combination& combination) {
@@ -66,12 +71,14 @@ void sortBySimplicity(std::vector<Candidate>& candidates) {
                    [](const Candidate& a, const Candidate& b) { return a.complexity < b.complexity; });
 }
 
-/// Takes of the candidates within the residual those that are independent, until so many are chosen.
+/// Takes of the candidates within the residual those that are independent and, where `holds` is asked, hold,
+/// until so many are chosen.
 void choose(const std::vector<Candidate>& candidates, double largest, std::size_t count,
-            ChosenFunctions& chosen, std::vector<Combination>& combinations) {
+            const std::function<bool(const Combination&)>& holds, ChosenFunctions& chosen,
+            std::vector<Combination>& combinations) {
   for (const Candidate& candidate : candidates) {
     if (combinations.size() < count && candidate.combination.residual <= largest &&
-        chosen.isIndependent(candidate.combination)) {
+        chosen.isIndependent(candidate.combination, largest) && holds(candidate.combination)) {
       chosen.add(candidate.combination);
       combinations.push_back(candidate.combination);
     }
@@ -79,7 +86,7 @@ void choose(const std::vector<Candidate>& candidates, double largest, std::size_
 }
 
 std::vector<Combination> nameCombinations(const FlatDirections& flat,
-                                          const std::vector<ParameterSpec>& parameters) {
+                                          const std::vector<ParameterSpec>& parameters, RidgePoints of) {
   const auto count = static_cast<std::size_t>(static_cast<Index>(flat.parameters.size()) - flat.dimension);
   std::vector<Candidate> simple = findProducts(flat, parameters, kResiduals.back());
   const std::vector<Candidate> sums = findSums(flat, parameters, kResiduals.back());
@@ -88,11 +95,15 @@ std::vector<Combination> nameCombinations(const FlatDirections& flat,
   ChosenFunctions chosen(flat, parameters);
   std::vector<Combination> combinations;
   for (const double largest : kResiduals) {
-    choose(simple, largest, count, chosen, combinations);
+    const auto holds = [&](const Combination& combination) {
+      return of == RidgePoints::kOfAny || largest == kResiduals.front() ||
+             isConstant(combination, flat, parameters);
+    };
+    choose(simple, largest, count, holds, chosen, combinations);
     if (combinations.size() < count) {
       std::vector<Candidate> bases = findBaseParameters(flat, parameters, largest);
       sortBySimplicity(bases);
-      choose(bases, largest, count, chosen, combinations);
+      choose(bases, largest, count, holds, chosen, combinations);
     }
   }
   return combinations;
@@ -106,27 +117,59 @@ std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>&
   return listNames(names);
 }
 
+std::string listExpressions(const std::vector<Combination>& combinations,
+                            const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> expressions;
+  for (const Combination& combination : combinations) {
+    const std::string constants = describeConstants(combination, parameters);
+    expressions.push_back(makeExpression(combination, parameters) +
+                          (constants.empty() ? "" : " (" + constants + ")"));
+  }
+  return listNames(expressions);
+}
+
 /// "{value: m * L, unit: kg m}"
 std::string makeFlowMap(const DerivedEntry& entry) {
   return "{value: " + entry.expression + (entry.unit.empty() ? "" : ", unit: " + entry.unit) + "}";
 }
 
+/// Whether one of the gradients (q x p) at the point is, in widths, that of the combination or of a function
+/// of it.
+bool isAmong(const Combination& combination, const MatrixXd& gradients, const VectorXd& point,
+             const VectorXd& widths) {
+  constexpr double kSame = 1e-6;  // central differences of a smooth function
+  const VectorXd own = calcGradient(combination, point).cwiseProduct(widths).normalized();
+  for (Index q = 0; q < gradients.rows(); ++q) {
+    const VectorXd other = widths.cwiseProduct(gradients.row(q).transpose());
+    if (std::abs(own.dot(other)) > (1.0 - kSame) * other.norm()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Ridge> nameRidges(const std::vector<FlatDirections>& flat,
-                              const std::vector<ParameterSpec>& parameters) {
+                              const std::vector<ParameterSpec>& parameters, RidgePoints of) {
   std::vector<Ridge> ridges;
   for (const FlatDirections& one : flat) {
     ridges.push_back({one.parameters, one.dimension, {}});
-    if (one.dimension < static_cast<Index>(one.parameters.size())) {
-      ridges.back().combinations = nameCombinations(one, parameters);
+    Ridge& ridge = ridges.back();
+    const auto determined =
+        static_cast<std::size_t>(static_cast<Index>(one.parameters.size()) - one.dimension);
+    if (determined > 0) {
+      ridge.combinations = nameCombinations(one, parameters, of);
+    }
+    if (of == RidgePoints::kOfOneMeasurement && ridge.combinations.size() < determined) {
+      ridge.local = findLocalSums(one, ridge.combinations, parameters);
     }
   }
   return ridges;
 }
 
 std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const MatrixXd& points,
-                              const std::vector<ParameterSpec>& parameters) {
+                              const std::vector<ParameterSpec>& parameters, RidgePoints of) {
   constexpr std::size_t kMost = 64;
   std::vector<MatrixXd> looked_at;
   std::vector<Index> places;
@@ -136,23 +179,22 @@ std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const Ma
       places.push_back(static_cast<Index>(i));
     }
   }
-  return nameRidges(findFlatDirections(looked_at, points(Eigen::all, places)), parameters);
+  return nameRidges(findFlatDirections(looked_at, points(Eigen::all, places)), parameters, of);
 }
 
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {
   const std::string names = listParameters(ridge, parameters);
+  const std::string local =
+      ridge.local.empty() ? "" : " near the best fit only " + listExpressions(ridge.local, parameters);
   if (ridge.combinations.empty()) {
-    return fmt::format(
-        "the features do not determine {} one by one, and no simple combination of them is known", names);
-  }
-  std::vector<std::string> expressions;
-  for (const Combination& combination : ridge.combinations) {
-    expressions.push_back(makeExpression(combination, parameters));
+    return fmt::format("the features do not determine {} one by one, and no simple combination of them {}",
+                       names, local.empty() ? "is known" : "holds wherever they fit:" + local);
   }
   const bool all =
       static_cast<Index>(ridge.combinations.size() + static_cast<std::size_t>(ridge.dimension)) ==
       static_cast<Index>(ridge.parameters.size());
-  return fmt::format("of {} the features determine {}{}", names, all ? "only " : "", listNames(expressions));
+  return fmt::format("of {} the features determine {}{}{}", names, all ? "only " : "",
+                     listExpressions(ridge.combinations, parameters), local.empty() ? "" : ";" + local);
 }
 
 std::vector<DerivedEntry> listDerived(const std::vector<Ridge>& ridges,
@@ -182,11 +224,20 @@ std::string makeDerivedYaml(const std::vector<Ridge>& ridges, const std::vector<
 }
 
 std::vector<std::string> adviseOnRidges(const std::vector<Ridge>& ridges,
-                                        const std::vector<ParameterSpec>& parameters) {
+                                        const std::vector<ParameterSpec>& parameters,
+                                        const DerivedQuantities* derived, const VectorXd& point) {
+  const MatrixXd gradients = derived != nullptr && point.size() == derived->countParameters()
+                                 ? derived->calcGradients(point)
+                                 : MatrixXd();
   std::vector<std::string> sentences;
   for (const Ridge& ridge : ridges) {
+    Ridge asked = ridge;
+    asked.combinations.clear();
+    std::copy_if(
+        ridge.combinations.begin(), ridge.combinations.end(), std::back_inserter(asked.combinations),
+        [&](const Combination& one) { return !isAmong(one, gradients, point, calcWidths(parameters)); });
     std::string entries;
-    for (const DerivedEntry& entry : listDerived({ridge}, parameters)) {
+    for (const DerivedEntry& entry : listDerived({asked}, parameters)) {
       entries += (entries.empty() ? "" : ", ") + entry.name + ": " + makeFlowMap(entry);
     }
     sentences.push_back(describeRidge(ridge, parameters) +

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/ridges/combination.hpp"
 #include "framework/estimation/ridges/flat_directions.hpp"
 
@@ -15,7 +16,13 @@ struct Ridge {
   /// The simplest independent functions of them that are determined; at most g - r, fewer where no simple
   /// ones fit.
   std::vector<Combination> combinations;
+  /// Sums of the parameters that are determined near the best fit alone, in the place of those that are
+  /// lacking.
+  std::vector<Combination> local{};
 };
+
+/// Whether points all fit one measurement, the first one best, or are of any.
+enum class RidgePoints { kOfAny, kOfOneMeasurement };
 
 /// Names what is identified. A function is identified if its gradient is orthogonal to the flat directions
 /// at all points. Sought are, from the simplest on,
@@ -24,21 +31,27 @@ struct Ridge {
 ///   coefficients follow from least squares; simple ones are taken where they fit. Base parameters of trees
 ///   (J + m L^2) are among these.
 /// Those are taken that fit within .001 (Combination::residual), else .01, else .05: where the flat direction
-/// is exact the first tells a product from a sum even in a narrow box. Cost: some 10 ms for six parameters.
+/// is exact the first tells a product from a sum even in a narrow box. Of one measurement those of the other
+/// two are constant (isConstant), or not taken. Cost: some 10 ms for six parameters.
 std::vector<Ridge> nameRidges(const std::vector<FlatDirections>& flat,
-                              const std::vector<ParameterSpec>& parameters);
+                              const std::vector<ParameterSpec>& parameters,
+                              RidgePoints of = RidgePoints::kOfAny);
 
 /// The same from the Fisher information at points (findFlatDirections()), of which at most 64 are looked at.
 std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, const Eigen::MatrixXd& points,
-                              const std::vector<ParameterSpec>& parameters);
+                              const std::vector<ParameterSpec>& parameters,
+                              RidgePoints of = RidgePoints::kOfAny);
 
 /// "of m, L the features determine only m * L"; without combinations that they do not determine them one by
-/// one.
+/// one. With the units of constants, and with sums that hold near the best fit alone, as such.
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters);
 
-/// A sentence for each ridge that has combinations, with what to add to the experiment file for them.
+/// A sentence for each ridge that has combinations, with what to add to the experiment file. What that
+/// derives already (`derived`; null: nothing) is left out, as its gradients at `point` tell.
 std::vector<std::string> adviseOnRidges(const std::vector<Ridge>& ridges,
-                                        const std::vector<ParameterSpec>& parameters);
+                                        const std::vector<ParameterSpec>& parameters,
+                                        const DerivedQuantities* derived = nullptr,
+                                        const Eigen::VectorXd& point = {});
 
 /// A combination as an entry below the key `derived`.
 struct DerivedEntry {

@@ -43,7 +43,7 @@ std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtra
   const MatrixXd chosen = points.leftCols(std::min(kMost, points.cols()));
   const auto p = static_cast<Index>(model.parameters.size());
   return findRidges(calcInformation(simulator, extractor, noise, model, chosen, threads), chosen.topRows(p),
-                    model.parameters);
+                    model.parameters, RidgePoints::kOfOneMeasurement);
 }
 
 }  // namespace twinmap

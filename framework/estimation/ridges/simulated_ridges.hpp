@@ -22,7 +22,8 @@ std::vector<Eigen::MatrixXd> calcInformation(const Simulator& simulator, const F
 /// The first rows of the draws are `parameters`. Without simulations.
 bool mayHaveRidges(const BoundedDraws& draws, const std::vector<ParameterSpec>& parameters);
 
-/// Ridges as the simulator shows them at points of the sampled box, of which at most 32 are taken.
+/// Ridges as the simulator shows them at points of the sampled box that all fit one measurement, best first.
+/// At most 32 of them are taken.
 std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,
                                   const FeatureNoise& noise, const ModelSpec& model,
                                   const Eigen::MatrixXd& points, int threads);

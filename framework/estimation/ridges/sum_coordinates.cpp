@@ -12,14 +12,6 @@ using Eigen::VectorXi;
 
 namespace {
 
-double calcValue(const Combination& combination, const VectorXd& point) {
-  double value = 0.0;
-  for (std::size_t k = 0; k < combination.terms.size(); ++k) {
-    value += combination.coefficients[k] * calcProduct(combination.terms[k], point);
-  }
-  return value;
-}
-
 double calcLargest(const Combination& combination, const std::vector<ParameterSpec>& unknown) {
   VectorXd sizes(static_cast<Index>(unknown.size()));
   for (std::size_t j = 0; j < unknown.size(); ++j) {

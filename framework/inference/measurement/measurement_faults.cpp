@@ -10,6 +10,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
+#include "framework/inference/measurement/wrap_modulus.hpp"
 
 namespace twinmap {
 namespace {
@@ -222,31 +223,12 @@ void tryDrift(const VectorXd& measured, const ResponseLayout& layout, Index outp
                             unit.empty() ? "" : " " + unit));
 }
 
-/// The modulus of a counter that begins again: what jumps there is more than the steps about it; 0 where none
-/// of its samples do.
-double calcModulus(const VectorXd& values) {
-  const std::vector<Index> jumps = findTurnJumps(values, values.maxCoeff() - values.minCoeff());
-  std::vector<double> moduli;
-  for (const Index i : jumps) {
-    if (i > 1 && i + 1 < values.size()) {
-      const double step = 0.5 * (values[i - 1] - values[i - 2] + values[i + 1] - values[i]);
-      moduli.push_back(std::abs(values[i] - values[i - 1] - step));
-    }
-  }
-  if (moduli.empty()) {
-    return 0.0;
-  }
-  const auto middle = moduli.begin() + static_cast<std::ptrdiff_t>(moduli.size() / 2);
-  std::nth_element(moduli.begin(), middle, moduli.end());
-  return *middle;
-}
-
 /// A counter that wraps: by a modulus of few digits, or by what it jumps.
 void tryWrap(const VectorXd& measured, const ResponseLayout& layout, Index output, Search& search) {
   const std::string& name = layout.output_names[static_cast<std::size_t>(output)];
   const Index times = layout.times.size(), first = layout.getRow(output, 0);
   const VectorXd values = measured.segment(first, times);
-  const double modulus = values.allFinite() ? calcModulus(values) : 0.0;
+  const double modulus = findModulus(layout.times, values);
   for (const int digits : {1, 2, 3, 6}) {
     const std::string text = toShortText(modulus, digits);
     const double rounded = std::stod(text);

@@ -2,6 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
@@ -83,8 +86,9 @@ std::string describeRefined(const Refined& refined) {
       refined.distance > kFar ? " (the quick estimate was poor; this is normal)" : "");
 }
 
-/// The components of a mixture.
-std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters) {
+/// The components of a mixture, with what would tell them apart where nothing else comes first.
+std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters,
+                            bool misfits) {
   constexpr int kDigits = 5, kStddevDigits = 3;
   constexpr double kMin = 0.01;  // a lighter one is not worth a line
   std::string text = "  multimodal, several parameter values may fit:\n";
@@ -100,7 +104,7 @@ std::string describeMixture(const Mixture& mixture, const std::vector<ParameterS
       text += fmt::format("    {:3.0f} %: {}\n", 100.0 * mixture.weights[c], values);
     }
   }
-  return text;
+  return text + (misfits ? "" : fmt::format("    {}\n", getNotice(Notice::kMultimodal).remedy));
 }
 
 std::string describeDiagnostics(const PosteriorEstimate& posterior) {
@@ -148,7 +152,7 @@ std::string describePosterior(const PosteriorEstimate& posterior,
          makeTable(posterior.estimate, parameters, quantities);
 }
 
-/// misfits: whether they are not explained.
+/// misfits: whether they are not explained, not by a fault of the recording either.
 std::string describeSegments(const SegmentReport& segments, bool misfits) {
   constexpr int kDigits = 4;
   std::string text =
@@ -175,6 +179,30 @@ std::string describeInferredNoise(const SimulatorFit& fit) {
   return text;
 }
 
+/// What is determined where parameters are not one by one; to be derived is not advised of what is.
+std::string describeRidges(const InferredMeasurement& inferred,
+                           const std::vector<ParameterSpec>& parameters) {
+  const auto p = static_cast<Index>(parameters.size());
+  const bool has_best =
+      inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->best.size() >= p;
+  const Eigen::VectorXd point =
+      has_best ? Eigen::VectorXd(inferred.posterior->fit->best.head(p)) : Eigen::VectorXd();
+  std::string text;
+  for (const std::string& advice :
+       adviseOnRidges(inferred.ridges, parameters, inferred.quantities.get(), point)) {
+    text += kIndent + advice + "\n";
+  }
+  return text;
+}
+
+/// Whether an unreliable posterior says what happened alone: bounds that are to be widened are not to be
+/// narrowed, nor is that said twice.
+bool isBrief(const std::vector<std::string>& statuses) {
+  constexpr Notice kOfBounds[] = {Notice::kAtBounds, Notice::kOutsideTraining, Notice::kMultimodal};
+  return isMismatch(statuses) || std::any_of(std::begin(kOfBounds), std::end(kOfBounds),
+                                             [&](Notice notice) { return hasStatus(statuses, notice); });
+}
+
 }  // namespace
 
 std::string makeInferenceTable(const InferredMeasurement& inferred,
@@ -188,7 +216,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
     text += describeInferredNoise(*inferred.posterior->fit);
   }
   if (inferred.segments) {
-    text += describeSegments(*inferred.segments, isMismatch(estimate.statuses));
+    text += describeSegments(*inferred.segments, isMismatch(estimate.statuses) && inferred.fault.empty());
   }
   if (inferred.prior) {
     text += "  prior: " + inferred.prior->text + "\n";
@@ -205,22 +233,17 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   if (estimate.isGiven()) {
     text += makeTable(estimate, parameters, quantities, listNuisance(inferred.posterior));
   }
-  for (const std::string& advice : adviseOnRidges(inferred.ridges, parameters)) {
-    text += "  " + advice + "\n";
-  }
+  text += describeRidges(inferred, parameters);
   if (estimate.isMultimodal()) {
-    text += describeMixture(estimate.mixture, parameters);
+    text += describeMixture(estimate.mixture, parameters, isMismatch(estimate.statuses));
   }
   if (inferred.by_estimator.isGiven() && (estimate.isRefined() || sampled)) {
     text += "  starting estimate (quick, not refined):\n" +
             makeTable(inferred.by_estimator, parameters, quantities);
   }
   if (inferred.posterior) {
-    // bounds that are to be widened are not to be narrowed
-    const bool is_brief = isMismatch(estimate.statuses) ||
-                          (inferred.posterior->fit && !inferred.posterior->fit->beyond.empty());
-    text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined(), is_brief,
-                              inferred.asked);
+    text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined(),
+                              isBrief(estimate.statuses), inferred.asked);
   }
   return text;
 }

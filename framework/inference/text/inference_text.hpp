@@ -3,9 +3,16 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/inference/inferrer.hpp"
 
 namespace twinmap {
+
+bool hasStatus(const std::vector<std::string>& statuses, Notice notice);
+
+/// Whether the remedy of a status goes against that of another beside it, or is the same in other words.
+/// Bounds are not to be widened where they are to exclude, nor twice.
+bool isAdvisedElse(const std::string& status, const std::vector<std::string>& statuses);
 
 /// The status with its numbers, then for each thing that is wrong a line that says what, and one that says
 /// what to do.

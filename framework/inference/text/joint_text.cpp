@@ -74,7 +74,7 @@ std::string describeAgreement(const JointInference& inferred, const std::vector<
       misfits ? explainBriefly(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess)
               : explainNotice(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess);
   return text + describeContradictions(inferred, parameters) +
-         "  The intervals below cover the scatter between recordings.\n";
+         (inferred.scatter.empty() ? "" : "  The intervals below cover the scatter between recordings.\n");
 }
 
 /// Of recordings that the model does not fit each by itself.
@@ -170,21 +170,28 @@ Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterS
 }  // namespace
 
 std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  const std::string statuses =
-      fmt::format("{}", fmt::join(listStatuses(inferred, static_cast<Index>(parameters.size())), ", "));
+  const std::vector<std::string> listed = listStatuses(inferred, static_cast<Index>(parameters.size()));
+  const std::string statuses = joinStatuses(listed, ", ");
   std::string text = fmt::format("{} recordings together: {}\n", inferred.alone.size(), statuses);
   if (!inferred.agreement) {
     return fillCommands(text + explainNotice(Notice::kNotSimulated, inferred.joint.message), inferred.asked);
   }
-  const std::string misfits = describeMisfits(inferred);
+  // each recording alone is tested at a level of its own: what all together take for chance is not said
+  const bool misfits = isMismatch(listed);
   if (!inferred.beyond.empty()) {
-    text += explainNotice(Notice::kAtBounds, listNames(inferred.beyond));
+    text += misfits || isAdvisedElse(getNotice(Notice::kAtBounds).name, listed)
+                ? explainBriefly(Notice::kAtBounds, listNames(inferred.beyond))
+                : explainNotice(Notice::kAtBounds, listNames(inferred.beyond));
   }
-  text += fillCommands(misfits + describeAgreement(inferred, parameters, !misfits.empty()), inferred.asked);
+  text += fillCommands(
+      (misfits ? describeMisfits(inferred) : "") + describeAgreement(inferred, parameters, misfits),
+      inferred.asked);
   if (isStated(inferred)) {
     text += makeEstimateTable(inferred, parameters);
   } else {
-    text += explainUnreliable(inferred.joint.message, inferred.asked);
+    text += misfits || inferred.disagrees() || !inferred.beyond.empty()
+                ? explainBriefly(Notice::kUnreliable, inferred.joint.message)
+                : explainUnreliable(inferred.joint.message, inferred.asked);
   }
   return text + makeAloneTable(inferred, parameters) +
          fmt::format("  sampled on the simulator: {} simulations\n", inferred.simulations);

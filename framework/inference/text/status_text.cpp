@@ -79,6 +79,17 @@ bool areAllAtBounds(const InferredMeasurement& inferred, const std::vector<Param
          std::all_of(parameters.begin(), parameters.end(), lies_there);
 }
 
+/// Whether more excitation is not what helps a parameter. A ridge says what is determined of it, or its sd is
+/// the estimator's, not what the measurement allows.
+bool isForOthers(const InferredMeasurement& inferred, Index parameter) {
+  const bool in_ridge = std::any_of(inferred.ridges.begin(), inferred.ridges.end(), [&](const Ridge& ridge) {
+    return std::find(ridge.parameters.begin(), ridge.parameters.end(), parameter) != ridge.parameters.end();
+  });
+  const Eigen::VectorXd ratio = inferred.by_estimator.calcRatioToLimit();
+  return in_ridge || (isEstimatorLimited(inferred) && ratio.size() > parameter &&
+                      ratio[parameter] > kEstimatorLimitedRatio);
+}
+
 /// One explanation a parameter that is hardly better known than before.
 std::string explainUninformative(const InferredMeasurement& inferred, const Estimate& estimate,
                                  const std::vector<ParameterSpec>& parameters) {
@@ -97,8 +108,9 @@ std::string explainUninformative(const InferredMeasurement& inferred, const Esti
           fmt::format("  {}: nothing uses {}\n    Name it in an expression of the system, or take it out.\n",
                       getNotice(Notice::kUninformative).name, name);
     } else if (left > kUninformativeShare) {
-      text += explainNotice(Notice::kUninformative, name,
-                            fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left)));
+      const std::string reduced = fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left));
+      text += isForOthers(inferred, i) ? explainBriefly(Notice::kUninformative, name, reduced)
+                                       : explainNotice(Notice::kUninformative, name, reduced);
     }
   }
   return text;
@@ -238,6 +250,14 @@ bool isMismatch(const std::optional<Trust>& trust) {
                       trust->statuses.end();
 }
 
+/// The place of what a trust model finds beyond noise: all over, or in one stretch beside which the rest
+/// fits.
+std::string describeTrusted(const Trust& trust, const std::vector<FeatureInfo>& features) {
+  const bool fits_beside = trust.chi_square_p_value >= kMismatchLevel;
+  return fmt::format("{}, {}", fits_beside ? "all but one stretch of the recording fits" : kNoValuesFit,
+                     describeAnomaly(trust, features));
+}
+
 std::string explainMismatch(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                             const std::vector<FeatureInfo>& features) {
   if (!inferred.fault.empty()) {
@@ -250,10 +270,8 @@ std::string explainMismatch(const InferredMeasurement& inferred, const std::vect
             "the residuals look like noise {:.3g} times as large as stated; measure it (twinmap noise)",
             factor));
   }
-  const std::string where =
-      isMismatch(inferred.trust)
-          ? fmt::format("{}, {}", kNoValuesFit, describeAnomaly(*inferred.trust, features))
-          : describeResidual(*inferred.posterior->fit, features);
+  const std::string where = isMismatch(inferred.trust) ? describeTrusted(*inferred.trust, features)
+                                                       : describeResidual(*inferred.posterior->fit, features);
   const bool all = areAllAtBounds(inferred, parameters);
   const std::string happened =
       (all ? "the best fit lies at the bounds of all parameters: " : "") + where + describeMissing(inferred);
@@ -383,28 +401,28 @@ std::string dropRemedies(const std::string& explained) {
   return text;
 }
 
-/// Whether the remedy of a status goes against that of another beside it, or is the same in other words:
-/// bounds are not to be widened where they are to exclude, nor twice.
-bool isAdvisedElse(const std::string& status, const std::vector<std::string>& statuses) {
-  const std::vector<std::pair<Notice, Notice>> pairs{{Notice::kAtBounds, Notice::kMultimodal},
-                                                     {Notice::kOutsideTraining, Notice::kAtBounds},
-                                                     {Notice::kUncalibrated, Notice::kNonlinear},
-                                                     {Notice::kSensorOffset, Notice::kClockFault},
-                                                     {Notice::kNoiseColoured, Notice::kClockFault}};
-  return std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
-    return status == getNotice(pair.first).name &&
-           std::find(statuses.begin(), statuses.end(), getNotice(pair.second).name) != statuses.end();
-  });
-}
-
-/// Whether the residual is tested with noise, spikes or a clock other than stated: the statuses say what.
+/// Whether the residual is tested with noise, spikes or a clock other than stated.
 bool isOtherThanStated(const InferredMeasurement& inferred, const SimulatorFit& fit) {
   return !fit.outliers.empty() || fit.getNoiseFactor() != 1.0 || fit.isColoured() || fit.hasOffset() ||
          !inferred.clock_faults.empty();
 }
 
+/// "with that " of what the statuses say of the noise, or that it is another.
+const char* describeCondition(const InferredMeasurement& inferred, const std::vector<std::string>& statuses) {
+  constexpr Notice kSaid[] = {Notice::kOutliers,     Notice::kClockFault,    Notice::kNoiseLarger,
+                              Notice::kNoiseSmaller, Notice::kNoiseColoured, Notice::kSensorOffset};
+  if (!isOtherThanStated(inferred, *inferred.posterior->fit)) {
+    return "";
+  }
+  return std::any_of(std::begin(kSaid), std::end(kSaid),
+                     [&](Notice notice) { return hasStatus(statuses, notice); })
+             ? "with that "
+             : "with other noise than stated ";
+}
+
 /// The statuses with the numbers that they follow from.
-std::string describeJudgement(const InferredMeasurement& inferred, const std::string& statuses) {
+std::string describeJudgement(const InferredMeasurement& inferred, const std::vector<std::string>& listed) {
+  const std::string statuses = joinStatuses(listed, ", ");
   if (inferred.trust) {
     const Trust& trust = *inferred.trust;
     constexpr double kLarge = 1e5;
@@ -421,7 +439,7 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::st
   const double p = fit.test.calcPValue();
   return fit.isSimulated()
              ? fmt::format("{} ({}chi-square {:.4g} of {:.4g} degrees of freedom, {})", statuses,
-                           isOtherThanStated(inferred, fit) ? "with that " : "", fit.chi_square, fit.degrees,
+                           describeCondition(inferred, listed), fit.chi_square, fit.degrees,
                            p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p))
              : statuses;
 }
@@ -431,8 +449,7 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::st
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features) {
   const Estimate estimate = selectEstimate(inferred);
-  std::string text =
-      inferred.source + ": " + describeJudgement(inferred, joinStatuses(estimate.statuses, ", ")) + "\n";
+  std::string text = inferred.source + ": " + describeJudgement(inferred, estimate.statuses) + "\n";
   for (const std::string& against : inferred.against) {
     text += "  " + against + "\n";
   }

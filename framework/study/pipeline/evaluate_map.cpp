@@ -172,9 +172,11 @@ void addLimit(const Study& study, const LabelledFeatures& test, const Informatio
       FeatureRelevance{test.infos, test.noise_covariance.diagonal().cwiseSqrt(), limit.relevance};
   result.evaluation.identifiability = calcIdentifiability(limit, getParameters(study));
   result.notes.warn(Severity::kDegraded, result.evaluation.identifiability->warnings);
+  const DerivedQuantities quantities(study.experiment);
   result.evaluation.ridges = findRidges(limit.information, test.parameters, getParameters(study));
   result.notes.warn(Severity::kDegraded,
-                    adviseOnRidges(result.evaluation.ridges, study.experiment.model.parameters));
+                    adviseOnRidges(result.evaluation.ridges, study.experiment.model.parameters,
+                                   quantities.count() > 0 ? &quantities : nullptr, test.parameters.col(0)));
   if (limit.failures > 0) {
     result.notes.warn(makeWarning(Notice::kLimitFailed, limit.failures));
   }

@@ -210,6 +210,6 @@ class Calibration(FolderTestCase):
         self.assertFalse((run / "sbc.csv").exists())
         result, run = self.run_calibrated("silent", "inverse_map=gp", "noise.stddev.y=0", "transform=[z_score]")
         self.assertIn(
-            "posteriors are not calibrated: the run has no surrogate",
+            "the calibration of posteriors is not tested: the run has no surrogate",
             result.stderr + result.stdout + (run / "run.log").read_text(),
         )

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/inference/measurement/wrap_modulus.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -127,6 +129,35 @@ TEST(MeasurementFaults, ACounterThatWrapsIsNamedWithItsModulus) {
                                      "[y] and measurement.range: {y: [-" +
                                      half + ", " + half + "]}");
   }
+}
+
+/// Samples that move by 30 and 37 % of the modulus.
+TEST(MeasurementFaults, AFastCounterThatWrapsIsNamedToo) {
+  for (const double modulus : {0.2, 0.16}) {
+    VectorXd response = makeResponse(1.0, 1.2);
+    response.head(kTimes) = response.head(kTimes).unaryExpr(
+        [modulus](double y) { return y - modulus * std::floor(y / modulus); });
+    const std::string text = modulus == 0.2 ? "0.2" : "0.16";
+    EXPECT_EQ(explain(response), "y jumps by " + text +
+                                     " m again and again, as a counter that wraps: give measurement.unwrap: "
+                                     "[y] and measurement.range: {y: [0, " +
+                                     text + "]}");
+  }
+}
+
+TEST(WrapModulus, IsThatOfWhatTurnsAlone) {
+  const VectorXd times = VectorXd::LinSpaced(200, 0.0, 4.0);
+  const VectorXd ramp = 30.0 * times + times.array().sin().matrix();
+  const auto wrap = [&](double modulus) -> VectorXd {
+    return ramp.unaryExpr([&](double y) { return y - modulus * std::floor(y / modulus); });
+  };
+  EXPECT_NEAR(findModulus(times, wrap(2.0)), 2.0, 1e-3);
+  EXPECT_NEAR(findModulus(times, wrap(1.7)), 1.7, 1e-3);
+  EXPECT_EQ(findModulus(times, ramp), 0.0);
+  EXPECT_EQ(findModulus(times, (20.0 * times).array().sin()), 0.0);
+  EXPECT_EQ(findModulus(times, VectorXd::Ones(200)), 0.0);
+  const VectorXd jagged = VectorXd::NullaryExpr(200, [](Index i) { return std::sin(37.0 * i * i); });
+  EXPECT_EQ(findModulus(times, jagged), 0.0);
 }
 
 TEST(MeasurementFaults, SeveralOutputsByOneFactorAreNamedTogether) {

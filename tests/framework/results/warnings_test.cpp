@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <utility>
+
 #include "framework/base/log/notice.hpp"
 
 namespace twinmap {
@@ -172,6 +175,101 @@ TEST(Warnings, LengthScalesAtTheirUpperBoundAreNoReasonToWarn) {
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("d (noise_stddev at its lower bound 1e-05)"), std::string::npos);
   EXPECT_EQ(warnings[0].find("k ("), std::string::npos);
+}
+
+/// Phrases of which the warnings of one run hold one at most.
+constexpr std::pair<const char*, const char*> kContradictions[] = {
+    {"refine=always", "set refine=never"},
+    {"refine=always", "the noise of a feature is 0"},
+    {"refine=always", "passed the test of their refinement"},
+    {"refine=always", "the estimates are refined"},
+    {"Nothing need be done: the estimates are refined", "contain too few of the true values"},
+    {"Nothing need be done: the estimates are refined", "exceeds the information limit"},
+    {"Nothing need be done: the estimates are refined", "refined estimates differ"},
+    {"the enlarged intervals hold", "contain too few of the true values"},
+    {"Use the surrogate itself", "the fast model is unreliable"},
+    {"Use the surrogate itself", "Train on simulations alone"},
+    {"instead of adding samples", "design.train.samples"},
+    {"excite the machine differently", "exceeds the information limit"}};
+
+using Change = std::function<void(RunSummary&)>;
+
+/// What may be said of a run, by what it is made of.
+std::vector<Change> listChanges() {
+  const auto note = [](Warning warning) {
+    return [warning](RunSummary& run) { run.notes.warnings.push_back(warning); };
+  };
+  const auto method = [](int accepted) {
+    return [accepted](RunSummary& run) {
+      run.evaluation.methods = {{"gp", kSamples, kSamples, 0, {}}, {"refined", kSamples, accepted, 16, {}}};
+      if (accepted < kSamples) {
+        run.notes.warnings.push_back(makeWarning(Notice::kFewRefined, accepted, kSamples, "nonlinear"));
+      }
+    };
+  };
+  return {method(kSamples),
+          method(kSamples / 2),
+          note(makeWarning(Notice::kCannotRefine, "no noise")),
+          note(makeWarning(Notice::kNoLimit)),
+          note(makeWarning(Notice::kSurrogateUncalibrated)),
+          note(makeWarning(
+              Notice::kSurrogateRescaled, "k",
+              "Nothing need be done; the run's test samples say whether the enlarged intervals hold.")),
+          note(makeWarning(Notice::kSurrogateRescaled, "k",
+                           "Refine the estimates on the simulator: refine=always.")),
+          note(makeWarning(Notice::kTeacherFar, 3.0, 10000)),
+          note(makeWarning(Notice::kStudentFar, "k", 2.0)),
+          note(makeWarning(Notice::kPosteriorsUnreliable, 5, 20)),
+          note(makeWarning(Notice::kPosteriorDiffers, 5, 20)),
+          [](RunSummary& run) { run.evaluation.metrics[0].coverage95 = 0.7; },
+          [](RunSummary& run) { run.evaluation.metrics[1].coverage95 = 1.0; },
+          [](RunSummary& run) { run.evaluation.metrics[2].ratio_to_limit = 5.2; },
+          [](RunSummary& run) { run.evaluation.predictions.stddev.row(2).setConstant(0.25); },
+          [](RunSummary& run) {
+            CrossValidation& found = run.training.cross_validation.emplace();
+            found.half = 125;
+            found.all = 250;
+            found.limit_ratio = Eigen::Vector3d(2.0, 2.0, 1.05);
+            found.error_ratio = Eigen::Vector3d(0.92, 0.5, 1.0);
+          }};
+}
+
+std::string join(const std::vector<std::string>& warnings) {
+  std::string text;
+  for (const std::string& warning : warnings) {
+    text += warning + "\n";
+  }
+  return text;
+}
+
+// Each beside each other, and all three of them.
+TEST(Warnings, OfARunDoNotContradictEachOther) {
+  const std::vector<Change> changes = listChanges();
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    for (std::size_t j = i; j < changes.size(); ++j) {
+      for (std::size_t k = j; k < changes.size(); ++k) {
+        RunSummary run = makeGoodRun();
+        changes[i](run);
+        changes[j](run);
+        changes[k](run);
+        const std::string text = join(collectWarnings(run));
+        for (const auto& [one, other] : kContradictions) {
+          ASSERT_FALSE(text.find(one) != std::string::npos && text.find(other) != std::string::npos)
+              << "'" << one << "' beside '" << other << "'\n"
+              << text;
+        }
+      }
+    }
+  }
+}
+
+TEST(Warnings, AreKnownByTheirWords) {
+  const std::string student = describeNotice(Notice::kStudentFar, "k", 2.0);
+  EXPECT_TRUE(saysNotice(student, Notice::kStudentFar));
+  EXPECT_FALSE(saysNotice(student, Notice::kTeacherFar));
+  EXPECT_TRUE(saysNotice(describeNotice(Notice::kFewRefined, 3, 4, "failed"), Notice::kFewRefined));
+  EXPECT_FALSE(
+      saysNotice("look: " + describeNotice(Notice::kSurrogateUncalibrated), Notice::kSurrogateUncalibrated));
 }
 
 }  // namespace

@@ -162,8 +162,24 @@ TEST(Look, SaysInWordsWhatStandsOut) {
   table.columns[1].values[50] = kUnknown;
   const std::string text = makeLookText(look(table, {}));
   EXPECT_NE(text.find("m.csv: 401 rows, 0 s to 4 s"), std::string::npos) << text;
-  EXPECT_NE(text.find("1 missing; 1 gap (0.49 s), the longest 0.02 s; 1 spike (3 s)"), std::string::npos)
+  EXPECT_NE(text.find("1 missing in 1 gap (0.49 s), the longest 0.02 s; 1 spike (3 s)"), std::string::npos)
       << text;
+}
+
+TEST(Look, SaysOnceWhatIsMissingInGaps) {
+  Table table = recordSine();
+  table.columns[1].values[50] = kUnknown;
+  table.columns[1].values.segment(200, 3).setConstant(kUnknown);
+  std::string text = makeLookText(look(table, {}));
+  EXPECT_NE(text.find("4 missing in 2 gaps (0.49 s, 1.99 s), the longest 0.04 s"), std::string::npos) << text;
+  table.columns[0].values.tail(100).array() += 0.5;  // a gap of the recorder holds no rows
+  text = makeLookText(look(table, {}));
+  EXPECT_NE(text.find("4 missing; 3 gaps (0.49 s, 1.99 s, 3 s), the longest 0.51 s"), std::string::npos)
+      << text;
+  table = recordSine();
+  table.columns[1].values[0] = kUnknown;  // not a gap: no sample stands before it
+  text = makeLookText(look(table, {}));
+  EXPECT_NE(text.find("1 missing\n"), std::string::npos) << text;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/ridges/candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -31,7 +32,8 @@ using Determined = std::function<VectorXd(const VectorXd&)>;
 /// differences of polynomials here). place: where a point is put.
 std::vector<Ridge> findIn(
     const std::vector<ParameterSpec>& parameters, const Determined& determined,
-    const Determined& place = [](const VectorXd& point) { return point; }) {
+    const Determined& place = [](const VectorXd& point) { return point; },
+    RidgePoints of = RidgePoints::kOfAny) {
   constexpr Index kPoints = 40;
   constexpr double kStep = 1e-5;
   const VectorXd widths = calcWidths(parameters), lower = calcLowerBounds(parameters);
@@ -54,7 +56,7 @@ std::vector<Ridge> findIn(
     jacobian = (1e3 * value.cwiseAbs().cwiseInverse()).asDiagonal() * jacobian;
     information.push_back(jacobian.transpose() * jacobian);
   }
-  return findRidges(information, points, parameters);
+  return findRidges(information, points, parameters, of);
 }
 
 std::vector<std::string> listExpressions(const std::vector<Ridge>& ridges,
@@ -80,6 +82,27 @@ TEST(IdentifiedCombinations, NameAProduct) {
   EXPECT_LT(ridges[0].combinations[0].residual, 1e-6);
   EXPECT_EQ(describeRidge(ridges[0], parameters), "of m, L the features determine only m * L");
   EXPECT_EQ(makeDerivedYaml(ridges, parameters), "derived:\n  m_L: {value: m * L, unit: kg m}\n");
+}
+
+/// k / m is that of the file upside down; c / m is not there.
+TEST(IdentifiedCombinations, AreNotAdvisedWhereTheFileDerivesThem) {
+  ExperimentSpec experiment;
+  experiment.model.parameters = {makeParameter("k", "N/m", 5, 15), makeParameter("m", "kg", 1, 2),
+                                 makeParameter("c", "N s/m", 0.1, 0.4)};
+  const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
+  const std::vector<Ridge> ridges =
+      findIn(parameters, [](const VectorXd& x) { return Eigen::Vector2d(x[0] / x[1], x[2] / x[1]).eval(); });
+  EXPECT_NE(adviseOnRidges(ridges, parameters)[0].find("{value: k / m, unit: 1/s2}"), std::string::npos);
+  DerivedSpec inverse;
+  inverse.name.text = "m_per_k";
+  inverse.value.text = "m / k";
+  experiment.derived = {inverse};
+  const DerivedQuantities derived(experiment);
+  const std::string advice = adviseOnRidges(ridges, parameters, &derived, Eigen::Vector3d(8.0, 1.5, 0.2))[0];
+  EXPECT_EQ(
+      advice,
+      "of k, m, c the features determine only k / m, k / c; reported with 'derived: {k_per_c: {value: k / c, "
+      "unit: 1/s}}'");
 }
 
 TEST(IdentifiedCombinations, NameAQuotient) {
@@ -188,6 +211,90 @@ TEST(IdentifiedCombinations, NameBaseParametersOfTwoLinks) {
   });
   EXPECT_EQ(listExpressions(ridges, parameters),
             (Names{"m_2 * L_2", "J_2 + m_2 * L_2^2", "J_1 + 0.09 * m_1 + 0.25 * m_2"}));
+}
+
+/// Points that fit one measurement of an arm of two links, as far as its bounds reach: m_2 changes by a fifth
+/// of its width along the ridge, and must not be taken for known. .4 m is the first link's length.
+TEST(IdentifiedCombinations, LeaveOutNoParameterThatChangesLittle) {
+  const std::vector<ParameterSpec> parameters{
+      makeParameter("m_1", "kg", 0.6, 1.8),       makeParameter("c_1", "m", 0.1, 0.3),
+      makeParameter("I_1", "kg m2", 0.005, 0.04), makeParameter("m_2", "kg", 0.4, 5),
+      makeParameter("c_2", "m", 0.05, 0.3),       makeParameter("I_2", "kg m2", 0.002, 0.06)};
+  const Determined base = [](const VectorXd& x) -> VectorXd {
+    return Eigen::Vector4d(x[0] * x[1] + 0.4 * x[3], x[3] * x[4], x[2] + x[0] * x[1] * x[1] + 0.16 * x[3],
+                           x[5] + x[3] * x[4] * x[4]);
+  };
+  const Determined place = [](const VectorXd& x) -> VectorXd {
+    const double m_2 = (1.44 - x[0] * x[1]) / 0.4, c_2 = 0.54 / m_2;
+    VectorXd placed(6);
+    placed << x[0], x[1], 0.54 - x[0] * x[1] * x[1] - 0.16 * m_2, m_2, c_2, 0.127 - m_2 * c_2 * c_2;
+    return placed;
+  };
+  const std::vector<Ridge> ridges = findIn(parameters, base, place, RidgePoints::kOfOneMeasurement);
+  ASSERT_EQ(ridges.size(), 1U);
+  EXPECT_EQ(ridges[0].dimension, 2);
+  EXPECT_EQ(describeRidge(ridges[0], parameters),
+            "of m_1, c_1, I_1, m_2, c_2, I_2 the features determine only m_2 * c_2, I_2 + m_2 * c_2^2, m_2 + "
+            "2.5 * m_1 * c_1 (2.5 in 1/m), I_1 + 0.16 * m_2 + m_1 * c_1^2 (0.16 in m2)");
+}
+
+/// Two other ridges with a parameter that changes by some per cent of its width.
+TEST(IdentifiedCombinations, LeaveOutNoParameterOfWideBounds) {
+  const std::vector<ParameterSpec> parameters{makeParameter("a", "N", 1, 3),
+                                              makeParameter("b", "N", 0.1, 20)};
+  const Determined sum = [](const VectorXd& x) { return VectorXd::Constant(1, x[0] + 0.4 * x[1]).eval(); };
+  const Determined on_sum = [](const VectorXd& x) -> VectorXd {
+    return Eigen::Vector2d(x[0], (5.0 - x[0]) / 0.4);
+  };
+  EXPECT_EQ(listExpressions(findIn(parameters, sum, on_sum, RidgePoints::kOfOneMeasurement), parameters),
+            Names{"a + 0.4 * b"});
+  const Determined product = [](const VectorXd& x) { return VectorXd::Constant(1, x[0] * x[1]).eval(); };
+  const Determined on_product = [](const VectorXd& x) -> VectorXd {
+    return Eigen::Vector2d(x[0], 2.0 / x[0]);
+  };
+  EXPECT_EQ(
+      listExpressions(findIn(parameters, product, on_product, RidgePoints::kOfOneMeasurement), parameters),
+      Names{"a * b"});
+}
+
+/// exp(a) + sin(3 b) + 5 b: no simple function of a and b is constant along it.
+TEST(IdentifiedCombinations, NameWhatHoldsNearTheBestFitAsSuch) {
+  const std::vector<ParameterSpec> parameters{makeParameter("a", "N", 0.5, 3),
+                                              makeParameter("b", "m", 0.5, 3)};
+  const Determined odd = [](const VectorXd& x) {
+    return VectorXd::Constant(1, std::exp(x[0]) + std::sin(3 * x[1]) + 5.0 * x[1]).eval();
+  };
+  const Determined place = [&](const VectorXd& x) -> VectorXd {
+    return Eigen::Vector2d(std::log(25.0 - std::sin(3 * x[1]) - 5.0 * x[1]), x[1]);
+  };
+  const std::vector<Ridge> ridges = findIn(parameters, odd, place, RidgePoints::kOfOneMeasurement);
+  ASSERT_EQ(ridges.size(), 1U);
+  EXPECT_TRUE(ridges[0].combinations.empty());
+  ASSERT_EQ(ridges[0].local.size(), 1U);
+  EXPECT_EQ(makeDerivedYaml(ridges, parameters), "");
+  EXPECT_NE(describeRidge(ridges[0], parameters)
+                .find("no simple combination of them holds wherever they fit: "
+                      "near the best fit only a + "),
+            std::string::npos)
+      << describeRidge(ridges[0], parameters);
+}
+
+TEST(IdentifiedCombinations, AreConstantWhereAllPointsFit) {
+  const std::vector<ParameterSpec> parameters{makeParameter("a", "", 1, 3), makeParameter("b", "", 1, 3)};
+  constexpr Index kPoints = 9;
+  FlatDirections flat{{0, 1}, 1, {}, MatrixXd(2, kPoints), {}};
+  for (Index i = 0; i < kPoints; ++i) {  // along a b = 3
+    const double a = 1.0 + 0.25 * static_cast<double>(i);
+    flat.points.col(i) << a, 3.0 / a;
+    flat.changes.emplace_back(Eigen::Vector2d(a, -3.0 / a).normalized());
+    flat.determined.emplace_back(MatrixXd::Zero(2, 2));
+  }
+  const Combination product{{Eigen::Vector2i(1, 1)}, {1.0}, 0.0};
+  const Combination sum{{Eigen::Vector2i(1, 0), Eigen::Vector2i(0, 1)}, {1.0, 1.0}, 0.0};
+  EXPECT_TRUE(isConstant(product, flat, parameters));
+  EXPECT_FALSE(isConstant(sum, flat, parameters));
+  flat.determined.assign(kPoints, MatrixXd::Identity(2, 2));  // nothing is known of either
+  EXPECT_TRUE(isConstant(sum, flat, parameters));
 }
 
 TEST(FlatDirections, AreNotWhereAPosteriorIsNarrow) {

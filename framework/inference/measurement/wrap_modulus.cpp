@@ -1,0 +1,71 @@
+#include "framework/inference/measurement/wrap_modulus.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "framework/data/measurement/time_series.hpp"
+
+namespace twinmap {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+/// What jumps by nearly the range is more than the steps about it; 0 where no sample does.
+double findBySize(const VectorXd& values) {
+  const std::vector<Index> jumps = findTurnJumps(values, values.maxCoeff() - values.minCoeff());
+  std::vector<double> moduli;
+  for (const Index i : jumps) {
+    if (i > 1 && i + 1 < values.size()) {
+      const double step = 0.5 * (values[i - 1] - values[i - 2] + values[i + 1] - values[i]);
+      moduli.push_back(std::abs(values[i] - values[i - 1] - step));
+    }
+  }
+  if (moduli.empty()) {
+    return 0.0;
+  }
+  const auto middle = moduli.begin() + static_cast<std::ptrdiff_t>(moduli.size() / 2);
+  std::nth_element(moduli.begin(), middle, moduli.end());
+  return *middle;
+}
+
+VectorXd calcSecondDifferences(const VectorXd& values) {
+  const Index n = values.size() - 2;
+  return values.tail(n) - 2.0 * values.segment(1, n) + values.head(n);
+}
+
+/// Least squares of the second differences over the modulus, for the turns that the last one makes. They
+/// begin with the range, a little less than the modulus.
+double findBySmoothness(const VectorXd& times, const VectorXd& values) {
+  constexpr int kIterations = 3;
+  constexpr double kSmoother = 0.1, kFarthest = 2.0;
+  const double range = values.maxCoeff() - values.minCoeff();
+  const VectorXd measured = calcSecondDifferences(values);
+  double modulus = range;
+  VectorXd continued = measured;
+  for (int i = 0; i < kIterations; ++i) {
+    const VectorXd turns = ((unwrap(times, values, modulus) - values) / modulus).array().round();
+    const VectorXd bends = calcSecondDifferences(turns);
+    modulus = -bends.dot(measured) / bends.squaredNorm();
+    continued = measured + modulus * bends;
+    if (!(modulus < kFarthest * range && kFarthest * modulus > range)) {  // nor where nothing turns
+      return 0.0;
+    }
+  }
+  return continued.squaredNorm() < kSmoother * kSmoother * measured.squaredNorm() ? modulus : 0.0;
+}
+
+}  // namespace
+
+double findModulus(const VectorXd& times, const VectorXd& values) {
+  constexpr Index kFewest = 8;
+  if (values.size() < kFewest || !values.allFinite() || values.minCoeff() == values.maxCoeff()) {
+    return 0.0;
+  }
+  const double by_size = findBySize(values);
+  return by_size > 0.0 ? by_size : findBySmoothness(times, values);
+}
+
+}  // namespace twinmap
