@@ -286,9 +286,6 @@ std::optional<ExperimentSpec> MeasurementReader::followTimes(const Table& table,
 std::optional<ExperimentSpec> MeasurementReader::followExcitation(const Table& table,
                                                                   std::optional<double> start,
                                                                   double beside) const {
-  if (reduction_) {
-    return std::nullopt;
-  }
   const double zero = getStart(table, start);
   const MeasurementStartSpec& stated = experiment_.measurement.start;
   ExperimentSpec followed = experiment_;
@@ -303,12 +300,23 @@ std::optional<ExperimentSpec> MeasurementReader::followExcitation(const Table& t
   }
 }
 
-std::optional<ExperimentSpec> MeasurementReader::follow(const Table& table,
-                                                        std::optional<double> start) const {
-  std::optional<ExperimentSpec> followed = followExcitation(table, start);
-  if (reduction_) {
-    return followed;
+std::optional<ExperimentSpec> MeasurementReader::followModes(const Table& table,
+                                                             std::optional<ExperimentSpec> followed) const {
+  const bool may_have = layout_.modes > 0 && layout_.times.size() > 0 && !experiment_.measurement.modes;
+  const std::filesystem::path modes = findModesFile(table.source, experiment_.measurement);
+  if (may_have && std::filesystem::exists(modes)) {
+    followed = followed ? std::move(followed) : std::make_optional(experiment_);
+    followed->measurement.modes = Name{modes.filename().string(), {}};
   }
+  return followed;
+}
+
+std::optional<ExperimentSpec> MeasurementReader::follow(const Table& table, std::optional<double> start,
+                                                        double beside) const {
+  if (reduction_) {
+    return std::nullopt;
+  }
+  std::optional<ExperimentSpec> followed = followModes(table, followExcitation(table, start, beside));
   std::optional<ExperimentSpec> timed =
       followRecordedTimes(followed ? *followed : experiment_, layout_, table, getStart(table, start));
   return timed ? timed : followed;

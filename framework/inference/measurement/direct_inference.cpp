@@ -147,23 +147,8 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   return infer(table, start, found, known);
 }
 
-std::optional<ExperimentSpec> DirectInference::followTable(const Table& table,
-                                                           std::optional<double> start) const {
-  const ExperimentSpec& own = reader_.getExperiment();
-  const bool may_have_modes =
-      reader_.getLayout().modes > 0 && reader_.getLayout().times.size() > 0 && !own.measurement.modes;
-  const std::filesystem::path modes = findModesFile(table.source, own.measurement);
-  if (!may_have_modes || !std::filesystem::exists(modes)) {
-    return reader_.follow(table, start);
-  }
-  ExperimentSpec beside = own;
-  beside.measurement.modes = Name{modes.filename().string(), {}};
-  std::optional<ExperimentSpec> followed = MeasurementReader(beside).follow(table, start);
-  return followed ? followed : std::make_optional(std::move(beside));
-}
-
 DirectInference::LikeRecording* DirectInference::follow(const Table& table, std::optional<double> start) {
-  std::optional<ExperimentSpec> experiment = followTable(table, start);
+  std::optional<ExperimentSpec> experiment = reader_.follow(table, start);
   if (!experiment) {
     return nullptr;
   }
@@ -400,11 +385,6 @@ std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, co
   };
   return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit,
                         listMeasured(reader_.getExperiment().model));
-}
-
-std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec) {
-  return spec.modes ? measurement.parent_path() / spec.modes->text
-                    : std::filesystem::path(measurement).replace_extension(".modes.csv");
 }
 
 InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-
 #include "framework/inference/measurement/measurement_inference.hpp"
 #include "framework/inference/refiner.hpp"
 
@@ -52,10 +50,8 @@ class DirectInference final : public MeasurementInference {
                              const SimulatorFit& fit) const;
   struct LikeRecording;
 
-  /// The experiment with the times and the excitation of a table, and the modes that stand beside it; none
-  /// where all is as the experiment says.
-  std::optional<ExperimentSpec> followTable(const Table& table, std::optional<double> start) const;
-  /// What infers with these; null where they are the experiment's.
+  /// What infers with the times and the excitation of a table (MeasurementReader::follow); null where they
+  /// are the experiment's.
   LikeRecording* follow(const Table& table, std::optional<double> start);
 
   InferredMeasurement infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
@@ -90,9 +86,5 @@ class DirectInference final : public MeasurementInference {
   std::vector<std::string> unused_;                      // parameters
   std::unique_ptr<LikeRecording> followed_;              // of the last table that was followed
 };
-
-/// Where the modes of a measurement stand beside its outputs: where the experiment says, else in the file of
-/// the same name that ends in ".modes.csv".
-std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec);
 
 }  // namespace twinmap

@@ -44,7 +44,8 @@ ReadSegments readSegments(const Table& table, double start, const ExperimentSpec
                           const SegmentGrid& grid) {
   const ExperimentSpec whole = makeRecordingExperiment(experiment, grid);
   const ResponseLayout layout = makeLayout(whole);
-  AvailableResponse read = readAvailable(table, whole.measurement, layout, start, grid.interval);
+  AvailableResponse read =
+      readAvailable(table, whole.measurement, layout, start, grid.interval, whole.features);
   if (read.stddev.size() > 0) {
     requireNoneStated({read.stddev, {}}, table.source);
   }

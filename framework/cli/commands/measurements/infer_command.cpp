@@ -124,13 +124,12 @@ class InferCommand {
         WaitingLine waiting("infer " + nameWindow(table.source, start));
         InferredMeasurement inferred = session_->infer(table, start, known_);
         inferred.asked = describeAsked(table.source, start);
-        std::optional<TimedRecording> recording;
+        std::optional<RecordedFeatures> recording;
         if (names_missing_ && source_.getReader().findReduction() == nullptr && inferred.fault.empty() &&
             (isMismatch(selectEstimate(inferred).statuses) || !inferred.clock_faults.empty())) {
           waiting.describe("look for what the model lacks, " + nameWindow(table.source, start));
-          recording = readTimedRecording(source_.getReader(), table, start, known_);
-          inferred.missing = findMissingTerm(recording->getExperiment(source_.getExperiment()),
-                                             recording->recording, inferred);
+          recording = readRecording(source_.getReader(), table, start, known_);
+          inferred.missing = findMissingTerm(source_.getExperiment(), *recording, inferred);
         }
         inferred.asked.diagnoses = diagnoses_ && recording;
         waiting.clear();
@@ -194,7 +193,7 @@ class InferCommand {
   bool isTable() const { return printer_.getFormat() == InferFormat::kTable; }
   const ModelSpec& getModel() const { return source_.getExperiment().model; }
   /// recording: to be diagnosed as well; null: not.
-  void print(const InferredMeasurement& inferred, const TimedRecording* recording) {
+  void print(const InferredMeasurement& inferred, const RecordedFeatures* recording) {
     if (isTable() || !page_.empty()) {  // a stream has no end
       history_.add(inferred);
     }
@@ -211,10 +210,10 @@ class InferCommand {
     }
   }
 
-  Diagnosis diagnose(const TimedRecording& recording) const {
+  Diagnosis diagnose(const RecordedFeatures& recording) const {
     DiagnosisOptions options;
     options.posterior = makePosteriorOptions(source_.getExperiment(), SimulatorPosteriorOptions{}.draws);
-    return twinmap::diagnose(recording.getExperiment(source_.getExperiment()), recording.recording, options);
+    return twinmap::diagnose(source_.getExperiment(), recording, options);
   }
 
   void reportError(const std::string& source, double start, const std::string& error) {

@@ -73,9 +73,8 @@ void nameMissing(const InferenceSource& source, Replay& replay) {
     const MeasurementReader& reader = source.getReader();
     const MeasuredWindow& from = replay.options.from;
     const Table table = readTable(from.file.string(), reader.listColumns(), MissingCells::kKeep);
-    const TimedRecording timed = readTimedRecording(reader, table, from.start, replay.options.known);
-    inferred.missing =
-        findMissingTerm(timed.getExperiment(source.getExperiment()), timed.recording, inferred);
+    const RecordedFeatures recording = readRecording(reader, table, from.start, replay.options.known);
+    inferred.missing = findMissingTerm(source.getExperiment(), recording, inferred);
   }
 }
 

@@ -137,8 +137,9 @@ std::string describeUseless(const VectorXd& times, const VectorXd& needed) {
   if (times.minCoeff() <= needed[needed.size() - 1] && times.maxCoeff() >= needed[0]) {
     return fmt::format(
         "has no sample at any needed time, {} to {}, but {} between them, {} apart (median), too far or too "
-        "unevenly to be interpolated; give features an interval of at least that, or infer this recording "
-        "alone, by samples at its own times",
+        "unevenly to be interpolated; give features an interval of at least that, or make all of them "
+        "samples, "
+        "which inference from the experiment file takes at the times of the recording",
         describeTime(needed[0]), describeTime(needed[needed.size() - 1]),
         (times.array() >= needed[0] && times.array() <= needed[needed.size() - 1]).count(),
         describeTime(calcMedianStep(times)));
