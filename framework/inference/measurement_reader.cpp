@@ -61,8 +61,8 @@ void requireNoneStated(const StatedNoise& stated, const std::string& source) {
   if (stated.isGiven()) {
     throw MeasurementError(
         source +
-        ": states standard deviations of its own, which only inference of one measurement from "
-        "the experiment file can use; leave these columns out for those of the experiment's noise");
+        ": states standard deviations of its own, which only inference from the experiment file "
+        "can use, not in segments; leave these columns out for those of the experiment's noise");
   }
 }
 

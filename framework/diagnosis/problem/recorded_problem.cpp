@@ -1,6 +1,7 @@
 #include "framework/diagnosis/problem/recorded_problem.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/inference/measurement/supposed_input.hpp"
 
 namespace twinmap {
 
@@ -64,8 +66,9 @@ std::vector<std::size_t> assignSimulators(const ExperimentSpec& experiment,
     if (!has_own) {
       of_trials[recordings.getTrial(k)] = simulators.size();
     }
-    simulators.push_back(std::make_unique<const SimulatorRefiner>(recordings.makeExperiment(experiment, k),
-                                                                  recordings.getLayout(k)));
+    simulators.push_back(std::make_unique<const SimulatorRefiner>(
+        recordings.makeExperiment(experiment, k), recordings.getLayout(k), SimulatorRefiner::Model::kTrusted,
+        has_own ? recordings.findOwn(k)->stated : StatedNoise()));
     simulators.back()->requireNoise();
   }
   return assigned;
@@ -212,16 +215,24 @@ void append(const RecordedFeatures& more, RecordedFeatures& recordings) {
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const VectorXd& known) {
   RecordedFeatures recording{reader.getLayout(), {}, known};
-  std::optional<MeasurementReader> own;
   const double beside = kDelayMargin * reader.getExperiment().model.simulation.duration;
-  if (std::optional<ExperimentSpec> followed = reader.follow(table, start, beside)) {
+  std::optional<ExperimentSpec> followed = reader.follow(table, start, beside);
+  std::optional<MeasurementReader> own;
+  if (followed) {
     own.emplace(std::move(*followed));
-    const ExperimentSpec& experiment = own->getExperiment();
-    recording.own.push_back(std::make_shared<const OwnSetup>(
-        OwnSetup{experiment.model.excitation, experiment.features, own->getLayout()}));
   }
-  AvailableFeatures found = (own ? *own : reader).readAvailableFeatures(table, start);
-  requireNoneStated(found.stated, table.source);
+  const MeasurementReader& used = own ? *own : reader;
+  AvailableFeatures found = used.readAvailableFeatures(table, start);
+  const std::optional<ExperimentSpec> supposed =
+      supposeInput(used, found, known, makePosteriorOptions(used.getExperiment(), kMinPosteriorDraws));
+  if (own || supposed || found.stated.isGiven()) {
+    const ExperimentSpec& experiment = supposed ? *supposed : used.getExperiment();
+    recording.own.push_back(std::make_shared<const OwnSetup>(
+        OwnSetup{experiment.model.excitation, experiment.features, used.getLayout(), found.stated}));
+  }
+  for (const ClippedSample& sample : found.clipped) {
+    found.features[sample.row] = std::numeric_limits<double>::quiet_NaN();
+  }
   recording.features.push_back(std::move(found.features));
   return recording;
 }

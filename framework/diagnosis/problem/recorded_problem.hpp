@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/refiner.hpp"
-#include "framework/inference/trial_reader.hpp"
 
 namespace twinmap {
 
@@ -17,11 +17,13 @@ struct TrialSetup {
   Eigen::VectorXd known;  ///< of the inputs
 };
 
-/// What a recording has in the place of its experiment's (MeasurementReader::follow).
+/// What a recording has in the place of its experiment's (MeasurementReader::follow), and what it states of
+/// its noise or its excitation's has in common (supposeInput).
 struct OwnSetup {
   std::vector<SignalSpec> excitation;
   std::vector<FeatureSpec> features;
   ResponseLayout layout;  ///< of these features
+  StatedNoise stated{};
 };
 
 /// Recordings of one machine, as features of an experiment, or of the trials that it combines.
@@ -56,7 +58,8 @@ struct RecordedFeatures {
 void append(const RecordedFeatures& more, RecordedFeatures& recordings);
 
 /// One window of a table, as inference reads it: at its own times, with its own excitation
-/// (MeasurementReader::follow). start: time in it that is 0 of the model; none: as the experiment says.
+/// (MeasurementReader::follow), of which what is not known is supposed (supposeInput). Samples at a limit of
+/// their sensor are left out. start: time in it that is 0 of the model; none: as the experiment says.
 /// Throws MeasurementError.
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const Eigen::VectorXd& known);

@@ -15,11 +15,11 @@
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/alternation.hpp"
-#include "framework/inference/measurement/excitation_noise.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
 #include "framework/inference/measurement/spikes.hpp"
 #include "framework/inference/measurement/supposed_input.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
+#include "framework/inference/measurement/unstated_noise.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/models/model_remarks.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -165,19 +165,8 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
                                            const AvailableFeatures& read, const Eigen::VectorXd& known) {
   requireModes(read, reader_, table.source);
   AvailableFeatures found = read;
-  std::optional<SimulatorRefiner> own;  // with the noise that the measurement and its excitation state
-  StatedNoise stated = found.stated;
-  if (std::optional<SupposedInput> input = supposeInput(reader_, found, known, options_)) {
-    stated.common = input->common;
-    found.features += reader_.getExtractor().extract(input->offset);
-    found.response += input->offset;
-    const ResponseLayout& layout = reader_.getLayout();
-    own.emplace(input->experiment, layout,
-                shareAmongThreads(makeTrustedSimulator(input->experiment.model, layout.times, layout.modes)),
-                stated);
-  } else if (stated.isGiven()) {
-    own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(), stated);
-  }
+  const std::unique_ptr<const SimulatorRefiner> own =
+      makeOwnSimulator(reader_, simulator_, found, known, options_);
   const SimulatorRefiner& simulator = own ? *own : simulator_;
   InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);
   tryWithoutSpikes(simulator, found, known, inferred);
@@ -193,7 +182,8 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
   inferred.against = listAgainst(found, known, inferred);
   if (inferred.fault.empty()) {
-    const std::vector<std::string> noisy = describeInputNoise(simulator, found, known, *inferred.posterior);
+    const std::vector<std::string> noisy =
+        describeUnstatedNoise(reader_, simulator, found, known, *inferred.posterior);
     inferred.remarks.insert(inferred.remarks.end(), noisy.begin(), noisy.end());
   }
   return inferred;
@@ -303,46 +293,6 @@ void DirectInference::tryWithoutAlternation(const SimulatorRefiner& simulator, A
     found.features = features;
     found.response += alternation.shift;
   }
-}
-
-std::vector<std::string> DirectInference::describeInputNoise(const SimulatorRefiner& simulator,
-                                                             const AvailableFeatures& found,
-                                                             const Eigen::VectorXd& known,
-                                                             const PosteriorEstimate& posterior) const {
-  constexpr double kShare = 0.01;       // of the signal's root mean square; the effect of less is linear
-  constexpr Eigen::Index kMost = 3000;  // features: its cost is their cube
-  const ModelSpec& model = reader_.getExperiment().model;
-  std::vector<std::string> described;
-  if (!posterior.fit || !posterior.fit->isSimulated() || !simulator.samplesFast() ||
-      !areSamples(reader_.getExperiment().features) ||
-      static_cast<Eigen::Index>(found.available.size()) > kMost) {
-    return described;
-  }
-  std::optional<LinearizedMeasurement> local;
-  for (std::size_t s = 0; s < model.excitation.size(); ++s) {
-    double size = 0.0;
-    const std::optional<ModelSpec> supposed = supposeNoise(model, s, kShare, size);
-    if (!supposed) {
-      continue;
-    }
-    local = local ? local : simulator.linearize(found.features, known, posterior.fit->best);
-    if (!local || !local->whitener) {
-      return described;
-    }
-    Eigen::VectorXd point(posterior.fit->best.size() + known.size());
-    point << posterior.fit->best, known;
-    const Eigen::MatrixXd responses = calcUnknownResponses(*supposed, reader_.getLayout(), point);
-    const double found_size = findNoiseSize(*local, simulator.getExtractor(), responses, *posterior.fit);
-    if (found_size > 0.0) {
-      described.push_back(
-          fmt::format("noise of {} of about {} {} ({} % of it) may be what is left, and moves the parameters "
-                      "by more than "
-                      "their standard deviations say: if its sensor has so much, state it as measured.noise",
-                      model.excitation[s].name.text, toShortText(found_size * size, 2),
-                      model.excitation[s].unit, toShortText(100.0 * kShare * found_size, 2)));
-    }
-  }
-  return described;
 }
 
 bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,

@@ -68,12 +68,6 @@ class DirectInference final : public MeasurementInference {
   void tryWithoutAlternation(const SimulatorRefiner& simulator, AvailableFeatures& found,
                              const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
 
-  /// What noise of a measured excitation, where none is stated, may have to do with what is left, a phrase
-  /// for each signal of which it is significant (once in a thousand) and that would leave nothing else.
-  std::vector<std::string> describeInputNoise(const SimulatorRefiner& simulator,
-                                              const AvailableFeatures& found, const Eigen::VectorXd& known,
-                                              const PosteriorEstimate& posterior) const;
-
   /// The simple fault of the recording that explains a gross misfit, or "".
   std::string explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,
                             const Eigen::VectorXd& known, const PosteriorEstimate& posterior) const;

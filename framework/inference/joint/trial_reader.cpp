@@ -1,4 +1,4 @@
-#include "framework/inference/trial_reader.hpp"
+#include "framework/inference/joint/trial_reader.hpp"
 
 #include <algorithm>
 
