@@ -156,7 +156,7 @@ Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optiona
   if (hasOwnClocks(spec) || recorded.modes > 0) {
     return reduction_ ? reduction_->reduceMeasured(readWhole(table, zero)) : readWhole(table, zero);
   }
-  const Measurement measurement = readMeasurement(table, spec, recorded, zero);
+  const Measurement measurement = readMeasurement(table, spec, recorded, zero, getFeatures());
   requireUnclipped(measurement, spec, recorded);
   const Eigen::VectorXd response = resample(measurement, recorded, sample_interval_);
   return reduction_ ? reduction_->reduceMeasured(response) : response;
@@ -164,8 +164,8 @@ Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optiona
 
 Eigen::VectorXd MeasurementReader::readWhole(const Table& table, double start) const {
   const AvailableResponse available =
-      readAvailable(table, experiment_.measurement, getRecorded(), start, sample_interval_);
-  if (!available.response.allFinite()) {
+      readAvailable(table, experiment_.measurement, getRecorded(), start, sample_interval_, getFeatures());
+  if (available.missing > 0 || !available.clipped.empty()) {
     throw MeasurementError(
         fmt::format("{}: a trained map needs every sample; missing or clipped: {}; inference from the "
                     "experiment file can do "
@@ -212,9 +212,8 @@ AvailableFeatures MeasurementReader::readLines(const Table& table) const {
 AvailableFeatures MeasurementReader::readSamples(const Table& table, std::optional<double> start) const {
   requireExcitation(table, start);
   warnOfJumps(table);
-  AvailableResponse response =
-      readAvailable(table, experiment_.measurement, getRecorded(), getStart(table, start), sample_interval_,
-                    reduction_ ? std::vector<FeatureSpec>() : experiment_.features);
+  AvailableResponse response = readAvailable(table, experiment_.measurement, getRecorded(),
+                                             getStart(table, start), sample_interval_, getFeatures());
   if (reduction_) {
     return reduce(std::move(response), table.source);
   }

@@ -103,6 +103,10 @@ class MeasurementReader {
   std::optional<ExperimentSpec> followModes(const Table& table, std::optional<ExperimentSpec> followed) const;
   /// What a recording must have samples of.
   const ResponseLayout& getRecorded() const { return reduction_ ? whole_layout_ : layout_; }
+  /// What samples are looked at for.
+  const std::vector<FeatureSpec>& getFeatures() const {
+    return reduction_ ? whole_.features : experiment_.features;
+  }
   AvailableFeatures reduce(AvailableResponse response, const std::string& source) const;
   void warnOfJumps(const Table& table) const;
   /// A response of columns with clocks of their own, none missing.

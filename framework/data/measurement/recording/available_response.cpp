@@ -175,11 +175,8 @@ std::vector<Index> listNeeded(const VectorXd& times, const std::string& output,
                               const std::vector<FeatureSpec>& features) {
   std::vector<Index> all(static_cast<std::size_t>(times.size())), needed;
   std::iota(all.begin(), all.end(), Index{0});
-  if (!features.empty()) {
-    const std::vector<Name> outputs = collectOutputs(features);
-    if (std::none_of(outputs.begin(), outputs.end(), [&](const Name& name) { return name.text == output; })) {
-      return {};
-    }
+  if (!features.empty() && !usesOutput(features, output)) {
+    return {};
   }
   if (features.empty() || !areSamples(features)) {
     return all;

@@ -55,6 +55,20 @@ Table without(Table table, Index row) {
   return table;
 }
 
+TEST(Measurement, NeedsNoColumnOfAnOutputThatNoFeatureUses) {
+  const VectorXd times = makeTimes(60, 0.01);
+  Table table = makeCubicTable(times);
+  const ResponseLayout layout = makeLayout(makeTimes(5, 0.1));
+  const VectorXd whole = resampleTable(table, layout);
+  table.columns.erase(table.columns.begin() + 1);
+  EXPECT_THROW(readMeasurement(table, {}, layout, 0.0), MeasurementError);
+  SamplesFeatureSpec samples;
+  samples.outputs = {{"theta", {}}};
+  const VectorXd alone = resample(readMeasurement(table, {}, layout, 0.0, {samples}), layout);
+  EXPECT_EQ(alone.tail(5), whole.tail(5));
+  EXPECT_TRUE(alone.head(5).array().isNaN().all());
+}
+
 TEST(Measurement, TimesSince1970KeepTheirMilliseconds) {
   EXPECT_EQ(describeTime(1.545), "1.545 s");
   EXPECT_EQ(describeTime(1700000000.379473), "1700000000.379 s");
