@@ -142,14 +142,17 @@ void MeasurementReader::requireExcitation(const Table& table, std::optional<doub
   requireTrainedExcitation(experiment_, table, getStart(table, start));
 }
 
-void MeasurementReader::warnOfJumps(const Table& table) const {
+void MeasurementReader::warnOfColumns(const Table& table) const {
   for (const std::string& jumps : describeJumps(table, experiment_.measurement, getRecorded())) {
     logWarning(jumps);
+  }
+  for (const std::string& unread : describeUnreadUnits(table, experiment_.measurement, getRecorded())) {
+    logWarning(unread);
   }
 }
 
 Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optional<double> start) const {
-  warnOfJumps(table);
+  warnOfColumns(table);
   const MeasurementSpec& spec = experiment_.measurement;
   const double zero = getStart(table, start);
   const ResponseLayout& recorded = getRecorded();
@@ -211,7 +214,7 @@ AvailableFeatures MeasurementReader::readLines(const Table& table) const {
 
 AvailableFeatures MeasurementReader::readSamples(const Table& table, std::optional<double> start) const {
   requireExcitation(table, start);
-  warnOfJumps(table);
+  warnOfColumns(table);
   AvailableResponse response = readAvailable(table, experiment_.measurement, getRecorded(),
                                              getStart(table, start), sample_interval_, getFeatures());
   if (reduction_) {

@@ -108,7 +108,8 @@ class MeasurementReader {
     return reduction_ ? whole_.features : experiment_.features;
   }
   AvailableFeatures reduce(AvailableResponse response, const std::string& source) const;
-  void warnOfJumps(const Table& table) const;
+  /// Of jumps by a turn, and of units that are not read.
+  void warnOfColumns(const Table& table) const;
   /// A response of columns with clocks of their own, none missing.
   Eigen::VectorXd readWhole(const Table& table, double start) const;
   /// From a recording in time, or a table of modes.

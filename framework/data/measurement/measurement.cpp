@@ -103,6 +103,25 @@ std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec
   return described;
 }
 
+std::vector<std::string> describeUnreadUnits(const Table& table, const MeasurementSpec& spec,
+                                             const ResponseLayout& layout) {
+  std::vector<std::string> described;
+  const auto add = [&](const ColumnSpec& column, const std::string& unit) {
+    const std::string said = describeUnreadUnit(table, column, unit);
+    if (!said.empty() && std::find(described.begin(), described.end(), said) == described.end()) {
+      described.push_back(said);
+    }
+  };
+  for (std::size_t o = 0; o < layout.output_names.size(); ++o) {
+    const TimeBase base = makeTimeBase(spec, layout.output_names[o], 0.0);
+    if (base.time && !base.sample_rate) {
+      add(*base.time, "s");
+    }
+    add(findColumnSpec(spec, layout.output_names[o]), layout.output_units[o]);
+  }
+  return described;
+}
+
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs) {
   std::vector<std::string> names = listTimeColumns(makeTimeBase(spec, 0.0));
   const auto add = [&](const std::string& name) {

@@ -47,6 +47,11 @@ bool isUnwrapped(const MeasurementSpec& spec, const std::string& output);
 std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec& spec,
                                        const ResponseLayout& layout);
 
+/// Columns of times and outputs whose names end in a unit that is not read (describeUnreadUnit), a sentence
+/// each. Of columns that the table has.
+std::vector<std::string> describeUnreadUnits(const Table& table, const MeasurementSpec& spec,
+                                             const ResponseLayout& layout);
+
 /// The names of all columns that are read for these outputs and for the start, for readTable().
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs);
 
