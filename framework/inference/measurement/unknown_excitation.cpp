@@ -254,4 +254,24 @@ std::vector<std::string> describeBridged(const ModelSpec& model) {
   return described;
 }
 
+void cutTable(std::size_t first, std::size_t count, TableSpec& table) {
+  const auto take = [&](std::vector<double>& values) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    values = std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  take(table.times);
+  take(table.values);
+  std::vector<TableUnknown> within;
+  for (const TableUnknown& unknown : table.unknown) {
+    const std::size_t end = unknown.first + unknown.changes.size();
+    const std::size_t from = std::max(unknown.first, first), to = std::min(end, first + count);
+    if (from < to) {
+      const auto begin = unknown.changes.begin() - static_cast<std::ptrdiff_t>(unknown.first);
+      within.push_back({from - first, std::vector<double>(begin + static_cast<std::ptrdiff_t>(from),
+                                                          begin + static_cast<std::ptrdiff_t>(to))});
+    }
+  }
+  table.unknown = std::move(within);
+}
+
 }  // namespace twinmap
