@@ -245,18 +245,18 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   }
 }
 
-std::optional<TimedRecording> testModel(const MeasurementReader& reader, const Table& table,
-                                        std::optional<double> start, const VectorXd& known,
-                                        InferredMeasurement& inferred) {
+std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const Table& table,
+                                          std::optional<double> start, const VectorXd& known,
+                                          InferredMeasurement& inferred) {
   const ExperimentSpec& experiment = reader.getExperiment();
   const auto u = static_cast<Index>(collectUnknown(experiment.model).size());
   const bool misfits = isMisfit(inferred);
   if (reader.findReduction() != nullptr || !inferred.fault.empty() || !isKnown(experiment.model) ||
-      inferred.states_noise || (!misfits && findBest(inferred, u).point.size() == 0)) {
+      (!misfits && findBest(inferred, u).point.size() == 0)) {
     return std::nullopt;
   }
-  TimedRecording recording = readTimedRecording(reader, table, start, known);
-  testModel(recording.getExperiment(experiment), recording.recording, inferred);
+  RecordedFeatures recording = readRecording(reader, table, start, known);
+  testModel(experiment, recording, inferred);
   return misfits || inferred.findMissing() != nullptr ? std::make_optional(std::move(recording))
                                                       : std::nullopt;
 }

@@ -20,8 +20,8 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
 /// The same of a window of a table, as `reader` infers it at `known` inputs. Left out are a reduced response,
 /// a measurement that a fault explains, and one that states its own noise. Returns the recording for a
 /// diagnosis, after a misfit, a clock's fault, or a term that is missing. Throws MeasurementError.
-std::optional<TimedRecording> testModel(const MeasurementReader& reader, const Table& table,
-                                        std::optional<double> start, const Eigen::VectorXd& known,
-                                        InferredMeasurement& inferred);
+std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const Table& table,
+                                          std::optional<double> start, const Eigen::VectorXd& known,
+                                          InferredMeasurement& inferred);
 
 }  // namespace twinmap

@@ -31,6 +31,21 @@ double calcLogOccupied(const RecordingsProblem& problem, const VectorXd& best) {
   return 0.5 * u * std::log(2.0 * M_PI) - 0.5 * log_determinant - u * std::log(2.0);
 }
 
+/// The log determinant of the noise's covariance, of recordings in which the structure has a part in it:
+/// noise of the excitation acts by its response.
+double calcLogNoise(const RecordingsProblem& problem, const RecordedFeatures& recordings) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    const OwnSetup* own = recordings.findOwn(k);
+    const std::optional<NoiseWhitener>& whitener = problem.get().trials[k].model->getWhole().whitener;
+    if (own != nullptr && own->stated.common.size() > 0 && whitener) {
+      const MatrixXd matrix = whitener->makeMatrix();
+      sum -= linalg::calcLogDeterminant(matrix * matrix.transpose()).log_size;
+    }
+  }
+  return sum;
+}
+
 /// The time from which on the last third of the samples lie.
 double findLastThird(const std::vector<FeatureInfo>& infos) {
   std::vector<double> times;
@@ -93,7 +108,8 @@ StructureFit calcStructureFit(const ExperimentSpec& experiment, const RecordedFe
   StructureFit fit;
   fit.chi_square = posterior.chi_square;
   fit.degrees = posterior.degrees;
-  fit.log_evidence = -0.5 * posterior.misfit + calcLogOccupied(problem, posterior.best);
+  fit.log_evidence = -0.5 * (posterior.misfit + calcLogNoise(problem, recordings)) +
+                     calcLogOccupied(problem, posterior.best);
   if (recordings.features.size() > 1) {
     holdOutEach(experiment, recordings, options, fit);
   } else {

@@ -58,7 +58,6 @@ struct InferredMeasurement {
   double start = 0.0;                        ///< time in the file that is 0 of the model, s
   std::vector<std::string> remarks{};        ///< how it was read, a phrase each
   std::vector<std::string> left_out{};       ///< what of the recording is missing and why, a phrase each
-  bool states_noise = false;                 ///< whether it, or its excitation, has noise of its own
   Estimate by_estimator;                     ///< not given where there is no trained estimator
   bool estimator_is_calibrated = true;       ///< isCalibrated()
   bool estimator_coverage_is_short = false;  ///< of the run's test samples, unrefined (CoverageRecord)

@@ -61,8 +61,8 @@ void requireNoneStated(const StatedNoise& stated, const std::string& source) {
   if (stated.isGiven()) {
     throw MeasurementError(
         source +
-        ": states standard deviations of its own, which only inference of one measurement from "
-        "the experiment file can use; leave these columns out for those of the experiment's noise");
+        ": states standard deviations of its own, which only inference from the experiment file "
+        "can use, not in segments; leave these columns out for those of the experiment's noise");
   }
 }
 
@@ -142,21 +142,24 @@ void MeasurementReader::requireExcitation(const Table& table, std::optional<doub
   requireTrainedExcitation(experiment_, table, getStart(table, start));
 }
 
-void MeasurementReader::warnOfJumps(const Table& table) const {
+void MeasurementReader::warnOfColumns(const Table& table) const {
   for (const std::string& jumps : describeJumps(table, experiment_.measurement, getRecorded())) {
     logWarning(jumps);
+  }
+  for (const std::string& unread : describeUnreadUnits(table, experiment_.measurement, getRecorded())) {
+    logWarning(unread);
   }
 }
 
 Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optional<double> start) const {
-  warnOfJumps(table);
+  warnOfColumns(table);
   const MeasurementSpec& spec = experiment_.measurement;
   const double zero = getStart(table, start);
   const ResponseLayout& recorded = getRecorded();
   if (hasOwnClocks(spec) || recorded.modes > 0) {
     return reduction_ ? reduction_->reduceMeasured(readWhole(table, zero)) : readWhole(table, zero);
   }
-  const Measurement measurement = readMeasurement(table, spec, recorded, zero);
+  const Measurement measurement = readMeasurement(table, spec, recorded, zero, getFeatures());
   requireUnclipped(measurement, spec, recorded);
   const Eigen::VectorXd response = resample(measurement, recorded, sample_interval_);
   return reduction_ ? reduction_->reduceMeasured(response) : response;
@@ -164,8 +167,8 @@ Eigen::VectorXd MeasurementReader::readResponse(const Table& table, std::optiona
 
 Eigen::VectorXd MeasurementReader::readWhole(const Table& table, double start) const {
   const AvailableResponse available =
-      readAvailable(table, experiment_.measurement, getRecorded(), start, sample_interval_);
-  if (!available.response.allFinite()) {
+      readAvailable(table, experiment_.measurement, getRecorded(), start, sample_interval_, getFeatures());
+  if (available.missing > 0 || !available.clipped.empty()) {
     throw MeasurementError(
         fmt::format("{}: a trained map needs every sample; missing or clipped: {}; inference from the "
                     "experiment file can do "
@@ -211,10 +214,9 @@ AvailableFeatures MeasurementReader::readLines(const Table& table) const {
 
 AvailableFeatures MeasurementReader::readSamples(const Table& table, std::optional<double> start) const {
   requireExcitation(table, start);
-  warnOfJumps(table);
-  AvailableResponse response =
-      readAvailable(table, experiment_.measurement, getRecorded(), getStart(table, start), sample_interval_,
-                    reduction_ ? std::vector<FeatureSpec>() : experiment_.features);
+  warnOfColumns(table);
+  AvailableResponse response = readAvailable(table, experiment_.measurement, getRecorded(),
+                                             getStart(table, start), sample_interval_, getFeatures());
   if (reduction_) {
     return reduce(std::move(response), table.source);
   }
@@ -286,9 +288,6 @@ std::optional<ExperimentSpec> MeasurementReader::followTimes(const Table& table,
 std::optional<ExperimentSpec> MeasurementReader::followExcitation(const Table& table,
                                                                   std::optional<double> start,
                                                                   double beside) const {
-  if (reduction_) {
-    return std::nullopt;
-  }
   const double zero = getStart(table, start);
   const MeasurementStartSpec& stated = experiment_.measurement.start;
   ExperimentSpec followed = experiment_;
@@ -303,12 +302,23 @@ std::optional<ExperimentSpec> MeasurementReader::followExcitation(const Table& t
   }
 }
 
-std::optional<ExperimentSpec> MeasurementReader::follow(const Table& table,
-                                                        std::optional<double> start) const {
-  std::optional<ExperimentSpec> followed = followExcitation(table, start);
-  if (reduction_) {
-    return followed;
+std::optional<ExperimentSpec> MeasurementReader::followModes(const Table& table,
+                                                             std::optional<ExperimentSpec> followed) const {
+  const bool may_have = layout_.modes > 0 && layout_.times.size() > 0 && !experiment_.measurement.modes;
+  const std::filesystem::path modes = findModesFile(table.source, experiment_.measurement);
+  if (may_have && std::filesystem::exists(modes)) {
+    followed = followed ? std::move(followed) : std::make_optional(experiment_);
+    followed->measurement.modes = Name{modes.filename().string(), {}};
   }
+  return followed;
+}
+
+std::optional<ExperimentSpec> MeasurementReader::follow(const Table& table, std::optional<double> start,
+                                                        double beside) const {
+  if (reduction_) {
+    return std::nullopt;
+  }
+  std::optional<ExperimentSpec> followed = followModes(table, followExcitation(table, start, beside));
   std::optional<ExperimentSpec> timed =
       followRecordedTimes(followed ? *followed : experiment_, layout_, table, getStart(table, start));
   return timed ? timed : followed;

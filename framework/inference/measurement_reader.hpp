@@ -84,13 +84,12 @@ class MeasurementReader {
   /// interpolated.
   std::optional<ExperimentSpec> followTimes(const Table& table, std::optional<double> start) const;
 
-  /// The experiment with its measured excitation as the table or its own file has it, as much later as the
-  /// window (followMeasuredSignals); none where that changes nothing. beside: s.
-  std::optional<ExperimentSpec> followExcitation(const Table& table, std::optional<double> start,
-                                                 double beside = 0.0) const;
-
-  /// Both.
-  std::optional<ExperimentSpec> follow(const Table& table, std::optional<double> start) const;
+  /// How every command reads a recording from an experiment: with its features at the times of the table
+  /// (followTimes), its measured excitation as the table or its own file has it, as much later as the window
+  /// (followMeasuredSignals; beside: s), and the modes that stand beside the table (findModesFile). None
+  /// where that changes nothing, and of a run that reduced its samples.
+  std::optional<ExperimentSpec> follow(const Table& table, std::optional<double> start,
+                                       double beside = 0.0) const;
 
   /// Warns of outputs whose interpolation errs by more than a tenth of their noise (calcInterpolationError).
   void warnOfInterpolation(const Table& table, std::optional<double> start) const;
@@ -99,10 +98,18 @@ class MeasurementReader {
   Eigen::VectorXd readFeatures(const Table& table, std::optional<double> start) const;
 
  private:
+  std::optional<ExperimentSpec> followExcitation(const Table& table, std::optional<double> start,
+                                                 double beside) const;
+  std::optional<ExperimentSpec> followModes(const Table& table, std::optional<ExperimentSpec> followed) const;
   /// What a recording must have samples of.
   const ResponseLayout& getRecorded() const { return reduction_ ? whole_layout_ : layout_; }
+  /// What samples are looked at for.
+  const std::vector<FeatureSpec>& getFeatures() const {
+    return reduction_ ? whole_.features : experiment_.features;
+  }
   AvailableFeatures reduce(AvailableResponse response, const std::string& source) const;
-  void warnOfJumps(const Table& table) const;
+  /// Of jumps by a turn, and of units that are not read.
+  void warnOfColumns(const Table& table) const;
   /// A response of columns with clocks of their own, none missing.
   Eigen::VectorXd readWhole(const Table& table, double start) const;
   /// From a recording in time, or a table of modes.

@@ -25,15 +25,14 @@ bool isAccepted(const InferredMeasurement& inferred) {
 /// model does not ask whether neighbours are alike; its false alarms are to stay what they are, so that a
 /// tenth of their level is enough here.
 bool leavesMisfit(const InferredMeasurement& inferred) {
-  const PosteriorEstimate* posterior = findSimulated(inferred);
-  const bool simulated = posterior != nullptr && posterior->fit->isSimulated();
+  const SimulatorFit* fit = findFit(inferred);
   if (inferred.trust) {
     constexpr double kColouredLevel = 0.1 * kMismatchLevel;
     const std::vector<TrustStatus>& all = inferred.trust->statuses;
     return std::find(all.begin(), all.end(), TrustStatus::kModelMismatch) != all.end() ||
-           (simulated && posterior->fit->test.whiteness_p < kColouredLevel);
+           (fit != nullptr && fit->test.whiteness_p < kColouredLevel);
   }
-  return simulated && posterior->fit->test.calcPValue() < kMismatchLevel;
+  return fit != nullptr && fit->test.calcPValue() < kMismatchLevel;
 }
 
 /// What the noise has that was not stated.
@@ -149,6 +148,11 @@ Estimate selectEstimate(const InferredMeasurement& inferred) {
   }
   estimate.statuses = listStatuses(inferred);
   return estimate;
+}
+
+const SimulatorFit* findFit(const InferredMeasurement& inferred) {
+  const PosteriorEstimate* posterior = findSimulated(inferred);
+  return posterior != nullptr && posterior->fit->isSimulated() ? &*posterior->fit : nullptr;
 }
 
 Estimate makeEstimate(const Refined& refined, Eigen::Index parameters) {

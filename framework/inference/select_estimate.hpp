@@ -12,6 +12,9 @@ namespace twinmap {
 /// is none of them.
 Estimate selectEstimate(const InferredMeasurement& inferred);
 
+/// The simulator's best fit; null where it was not asked, or nothing could be simulated.
+const SimulatorFit* findFit(const InferredMeasurement& inferred);
+
 /// That of a refinement that was accepted: its first p parameters.
 Estimate makeEstimate(const Refined& refined, Eigen::Index parameters);
 

@@ -2,8 +2,8 @@
 #include <pybind11/stl.h>
 
 #include "framework/experiment/files/experiment_file.hpp"
-#include "framework/inference/recording_list.hpp"
-#include "framework/inference/trial_reader.hpp"
+#include "framework/inference/joint/recording_list.hpp"
+#include "framework/inference/joint/trial_reader.hpp"
 #include "framework/python/arrays.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/measured_columns.hpp"

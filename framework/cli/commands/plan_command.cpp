@@ -29,7 +29,7 @@ void plan(const RunArguments& arguments) {
   std::vector<SweepCase> cases = expandCasesWithSignals(tree);
   followNoise(cases);
   if (cases.size() == 1) {
-    cases.front().experiment = reduceLongRecord(std::move(cases.front().experiment));
+    cases.front().experiment = reduceLongRecord(cases.front().experiment);
   }
   silenceLog();  // of the small runs that are timed
   ExperimentSurvey survey =

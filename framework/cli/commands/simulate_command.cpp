@@ -7,6 +7,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/data/features/feature_extractor.hpp"
 #include "framework/data/measurement/files/table.hpp"
+#include "framework/data/measurement/measured_modes.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/check/check_noise.hpp"
@@ -14,7 +15,6 @@
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
-#include "framework/inference/measurement/direct_inference.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 

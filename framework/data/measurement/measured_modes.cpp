@@ -115,4 +115,9 @@ MeasuredModes readModes(const Table& table, const ResponseLayout& layout) {
   return modes;
 }
 
+std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec) {
+  return spec.modes ? measurement.parent_path() / spec.modes->text
+                    : std::filesystem::path(measurement).replace_extension(".modes.csv");
+}
+
 }  // namespace twinmap

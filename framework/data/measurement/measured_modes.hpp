@@ -1,9 +1,11 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "framework/data/measurement/files/table.hpp"
+#include "framework/experiment/measurement_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
 
 namespace twinmap {
@@ -25,5 +27,9 @@ std::vector<std::string> listModeColumns();
 /// order of the model's modes or some are missing. Rows beyond the layout's modes are not used. Throws
 /// MeasurementError for a table without such columns, numbers that no mode can have and a mode given twice.
 MeasuredModes readModes(const Table& table, const ResponseLayout& layout);
+
+/// Where the modes of a measurement stand beside its outputs: where the experiment says, else in the file of
+/// the same name that ends in ".modes.csv".
+std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec);
 
 }  // namespace twinmap

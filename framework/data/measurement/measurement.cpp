@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/trigger.hpp"
@@ -102,6 +103,25 @@ std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec
   return described;
 }
 
+std::vector<std::string> describeUnreadUnits(const Table& table, const MeasurementSpec& spec,
+                                             const ResponseLayout& layout) {
+  std::vector<std::string> described;
+  const auto add = [&](const ColumnSpec& column, const std::string& unit) {
+    const std::string said = describeUnreadUnit(table, column, unit);
+    if (!said.empty() && std::find(described.begin(), described.end(), said) == described.end()) {
+      described.push_back(said);
+    }
+  };
+  for (std::size_t o = 0; o < layout.output_names.size(); ++o) {
+    const TimeBase base = makeTimeBase(spec, layout.output_names[o], 0.0);
+    if (base.time && !base.sample_rate) {
+      add(*base.time, "s");
+    }
+    add(findColumnSpec(spec, layout.output_names[o]), layout.output_units[o]);
+  }
+  return described;
+}
+
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs) {
   std::vector<std::string> names = listTimeColumns(makeTimeBase(spec, 0.0));
   const auto add = [&](const std::string& name) {
@@ -130,14 +150,22 @@ VectorXd readOutput(const Table& table, const MeasurementSpec& spec, const Respo
                                  : values;
 }
 
+bool usesOutput(const std::vector<FeatureSpec>& features, const std::string& output) {
+  const std::vector<Name> all = collectOutputs(features);
+  return std::any_of(all.begin(), all.end(), [&](const Name& name) { return name.text == output; });
+}
+
 Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
-                            double start) {
+                            double start, const std::vector<FeatureSpec>& features) {
   constexpr Index kMargin = 3;  // samples for the cubic beside the first and the last needed time
   std::vector<ColumnSpec> columns;
+  std::vector<bool> needed;
+  Index rows = 0;
   for (const std::string& output : layout.output_names) {
     columns.push_back(findColumnSpec(spec, output));
+    needed.push_back(features.empty() || usesOutput(features, output));
+    rows = needed.back() && rows == 0 ? getColumn(table, columns.back().name).values.size() : rows;
   }
-  const Index rows = columns.empty() ? 0 : getColumn(table, columns.front().name).values.size();
   const Eigen::VectorXd times = readTimes(table, makeTimeBase(spec, start), rows);
   const bool any = layout.times.size() > 0;
   const RowRange range =
@@ -147,9 +175,13 @@ Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, con
                           times.segment(range.first, range.count),
                           {},
                           Eigen::MatrixXd(range.count, layout.getOutputCount())};
+  measurement.values.setConstant(std::numeric_limits<double>::quiet_NaN());
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    requireLength(table, getColumn(table, columns[i].name), times.size());
     measurement.column_names.push_back(columns[i].name);
+    if (!needed[i]) {
+      continue;
+    }
+    requireLength(table, getColumn(table, columns[i].name), times.size());
     measurement.values.col(static_cast<Index>(i)) =
         readOutput(table, spec, layout, i, measurement.times, range.first);
   }

@@ -2,6 +2,7 @@
 
 #include "framework/data/measurement/files/table.hpp"
 #include "framework/data/measurement/time_series.hpp"
+#include "framework/experiment/feature_spec.hpp"
 #include "framework/experiment/measurement_spec.hpp"
 #include "framework/simulation/response_layout.hpp"
 
@@ -46,6 +47,11 @@ bool isUnwrapped(const MeasurementSpec& spec, const std::string& output);
 std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec& spec,
                                        const ResponseLayout& layout);
 
+/// Columns of times and outputs whose names end in a unit that is not read (describeUnreadUnit), a sentence
+/// each. Of columns that the table has.
+std::vector<std::string> describeUnreadUnits(const Table& table, const MeasurementSpec& spec,
+                                             const ResponseLayout& layout);
+
 /// The names of all columns that are read for these outputs and for the start, for readTable().
 std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vector<std::string>& outputs);
 
@@ -54,13 +60,17 @@ std::vector<std::string> listColumns(const MeasurementSpec& spec, const std::vec
 Eigen::VectorXd readOutput(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
                            std::size_t output, const Eigen::VectorXd& times, Eigen::Index first);
 
+/// Whether any of the features is made of an output.
+bool usesOutput(const std::vector<FeatureSpec>& features, const std::string& output);
+
 /// The outputs of the layout from the columns of a table with one clock, whose time `start` (s) is the
 /// model's 0, converted to the layout's units; only the rows that its times need, and a few beside; outputs
 /// that wrap continued over turns (unwrap). Throws MeasurementError for a missing column, columns of
 /// different length, a unit that does not convert, times that do not increase. O(rows of the table) for the
-/// times, O(rows needed) for the outputs.
+/// times, O(rows needed) for the outputs. features: what the outputs are for; of none are NaN, and need no
+/// column. Empty: all are needed.
 Measurement readMeasurement(const Table& table, const MeasurementSpec& spec, const ResponseLayout& layout,
-                            double start);
+                            double start, const std::vector<FeatureSpec>& features = {});
 
 /// Throws MeasurementError for a sample between the layout's first and last time at a limit of its sensor's
 /// range: for what cannot use clipped samples.

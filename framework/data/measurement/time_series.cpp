@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/base/text/trim.hpp"
 #include "framework/experiment/expression/units.hpp"
 
 namespace twinmap {
@@ -42,6 +43,28 @@ UnitConversion findConversion(const Table& table, const Column& column, const Co
   }
 }
 
+/// What stands behind the last bracket, comma or slash of a name, or underscore of one of times, if it is a
+/// unit that means another number, or in brackets behind times, which is to be one; "" if not. "x_in" may be
+/// an input, "log (left)" a side.
+std::string findHiddenUnit(const std::string& name, const std::string& unit) {
+  const bool of_times = unit == "s";
+  const std::size_t open = name.find_last_of(of_times ? "(,/_" : "(,/");
+  const bool in_brackets = open != std::string::npos && name[open] == '(' && name.back() == ')';
+  if (open == std::string::npos || open == 0 || (name[open] == '(' && !in_brackets)) {
+    return "";
+  }
+  const std::string tail = trim(name.substr(open + 1, name.size() - open - (in_brackets ? 2 : 1)));
+  if (!isUnit(tail)) {
+    return of_times && in_brackets ? tail : "";
+  }
+  try {
+    const UnitConversion conversion = calcUnitConversion(tail, unit, {});
+    return conversion.factor != 1.0 || conversion.offset != 0.0 ? tail : "";
+  } catch (const ExperimentError&) {
+    return "";  // of another dimension
+  }
+}
+
 void requireIncreasing(const Table& table, const Column& column, const VectorXd& times) {
   const double* end = times.data() + times.size();
   const double* bad = std::adjacent_find(times.data(), end, std::greater_equal<>());
@@ -60,6 +83,29 @@ std::vector<std::string> listTimeColumns(const TimeBase& base) {
     return {};
   }
   return base.time ? std::vector<std::string>{base.time->name} : std::vector<std::string>{"t", "time"};
+}
+
+std::string describeAssumedUnit(const Table& table, const TimeBase& base) {
+  if (base.sample_rate) {
+    return "";
+  }
+  const Column& column = getTimeColumn(table, base);
+  const bool is_stated = column.unit || (base.time && base.time->unit);
+  return is_stated ? "" : fmt::format("column '{}' states no unit: s is assumed", column.name);
+}
+
+std::string describeUnreadUnit(const Table& table, const ColumnSpec& wanted, const std::string& unit) {
+  const Column* column = findColumn(table, wanted.name);
+  const std::string hidden = column == nullptr || column->unit || wanted.unit || unit.empty()
+                                 ? ""
+                                 : findHiddenUnit(column->name, unit);
+  if (hidden.empty()) {
+    return "";
+  }
+  return fmt::format(
+      "{}: '{}' in the name of column '{}' is not read as its unit: {} is assumed; write the unit in square "
+      "brackets behind the name, in the file or in the measurement section: '{} [{}]'",
+      table.source, hidden, column->name, unit, column->name, isUnit(hidden) ? hidden : "ms");
 }
 
 VectorXd readUnorderedTimes(const Table& table, const TimeBase& base, Index rows) {

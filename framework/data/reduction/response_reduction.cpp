@@ -7,6 +7,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/features/layout_rows.hpp"
+#include "framework/experiment/check/check_noise.hpp"
 
 namespace twinmap {
 namespace {
@@ -199,33 +200,24 @@ bool isReduced(const ExperimentSpec& experiment) {
   });
 }
 
-ExperimentSpec reduceLongRecord(ExperimentSpec experiment) {
+ExperimentSpec reduceLongRecord(const ExperimentSpec& experiment) {
   constexpr Index kLong =
       10000;  // a run of the cart takes 705 MB with all samples, 280 MB reduced; of 1000 as much
+  ExperimentSpec reduced = experiment;
   Index count = 0;
-  for (const FeatureSpec& feature : experiment.features) {
-    const auto* samples = std::get_if<SamplesFeatureSpec>(&feature);
-    if (samples == nullptr || samples->reduce) {
+  for (FeatureSpec& feature : reduced.features) {
+    auto* samples = std::get_if<SamplesFeatureSpec>(&feature);
+    if (samples != nullptr && samples->reduce) {
       return experiment;
     }
-    count += static_cast<Index>(samples->outputs.size()) * samples->count;
+    if (samples != nullptr) {
+      samples->reduce = SampleReduction::kAutomatic;
+      count += static_cast<Index>(samples->outputs.size()) * samples->count;
+    }
   }
-  const std::vector<OutputNoiseSpec>& noise = experiment.noise.stddev;
-  const auto has_noise = [&](const Name& output) {
-    return std::any_of(noise.begin(), noise.end(), [&](const OutputNoiseSpec& spec) {
-      return spec.name.text == output.text && experiment.noise.scale * spec.stddev > 0.0;
-    });
-  };
-  const std::vector<Name> outputs = collectOutputs(experiment.features);
-  if (count < kLong || !experiment.trials.empty() || experiment.inverse_map.isNone() ||
-      experiment.model.source || !experiment.noise.correlation.empty() ||
-      !std::all_of(outputs.begin(), outputs.end(), has_noise)) {
-    return experiment;
-  }
-  for (FeatureSpec& feature : experiment.features) {
-    std::get<SamplesFeatureSpec>(feature).reduce = SampleReduction::kAutomatic;
-  }
-  return experiment;
+  const bool may_be = experiment.trials.empty() && !experiment.inverse_map.isNone() &&
+                      !experiment.model.source && findReductionFault(reduced).empty();
+  return count >= kLong && may_be ? reduced : experiment;
 }
 
 void requireAllSamples(const ExperimentSpec& experiment, const std::string& what) {

@@ -68,7 +68,7 @@ bool isReduced(const ExperimentSpec& experiment);
 
 /// With 'reduce: automatic' where the samples are 10000 or more, nothing else is looked at and their noise is
 /// independent, unless the file says otherwise, has trials or another program simulates.
-ExperimentSpec reduceLongRecord(ExperimentSpec experiment);
+ExperimentSpec reduceLongRecord(const ExperimentSpec& experiment);
 
 /// Throws ExperimentError where they are: for `what`, which needs all samples.
 void requireAllSamples(const ExperimentSpec& experiment, const std::string& what);

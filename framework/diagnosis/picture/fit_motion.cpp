@@ -62,7 +62,9 @@ FitMotion::FitMotion(const Diagnosis& diagnosis, const ExperimentSpec& experimen
 }
 
 RecordedMotion FitMotion::simulate(std::size_t recording, const VectorXd& times) const {
-  const ModelSpec& model = diagnosis_.corrected.model;
+  const SingleRecording single =
+      takeRecording(diagnosis_.corrected, recordings_, diagnosis_.after.posterior.best, recording);
+  const ModelSpec& model = single.experiment.model;
   ModelSpec observed = model;
   observed.outputs.clear();
   for (const ForcedCoordinate& coordinate : coordinates_) {
@@ -74,8 +76,6 @@ RecordedMotion FitMotion::simulate(std::size_t recording, const VectorXd& times)
   }
   // controllers read them
   observed.outputs.insert(observed.outputs.end(), model.outputs.begin(), model.outputs.end());
-  const SingleRecording single =
-      takeRecording(diagnosis_.corrected, recordings_, diagnosis_.after.posterior.best, recording);
   VectorXd point(single.point.size() + recordings_.known.size());
   point << single.point, recordings_.known;
   const MatrixXd outputs = simulateOutputs(observed, times, point);

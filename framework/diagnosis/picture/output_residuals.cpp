@@ -46,6 +46,15 @@ VectorXd interpolate(const VectorXd& times, const VectorXd& values, const Vector
   return found;
 }
 
+bool hasFewTimes(const RecordedFeatures& recordings) {
+  for (std::size_t k = 0; k < recordings.features.size(); ++k) {
+    if (recordings.getLayout(k).times.size() < 2) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<OutputResidual> listOutputResiduals(const Diagnosis& diagnosis, const ExperimentSpec& experiment,
@@ -57,11 +66,11 @@ std::vector<OutputResidual> listOutputResiduals(const Diagnosis& diagnosis, cons
   std::vector<RecordedMotion> moved;
   std::vector<OutputResidual> residuals;
   if (before.size() != static_cast<Index>(infos.size()) || after.size() != before.size() ||
-      recordings.layout.times.size() < 2) {
+      hasFewTimes(recordings)) {
     return residuals;  // noise of fewer dimensions than features: no residual belongs to one sample
   }
   for (std::size_t k = 0; k < std::min(count, recordings.features.size()); ++k) {
-    moved.push_back(motion.simulate(k, recordings.layout.times));
+    moved.push_back(motion.simulate(k, recordings.getLayout(k).times));
   }
   for (const Sequence& sequence : listSequences(infos)) {
     OutputResidual one{static_cast<std::size_t>(sequence.output) % outputs,
@@ -81,12 +90,12 @@ std::vector<OutputResidual> listOutputResiduals(const Diagnosis& diagnosis, cons
     one.before = before(sequence.places);
     one.after = diagnosis.found > 0 ? VectorXd(after(sequence.places)) : VectorXd();
     const std::vector<MovingCoordinate>& own = moved[one.recording].coordinates;
+    const VectorXd& times = recordings.getLayout(one.recording).times;
     one.positions.resize(n, static_cast<Index>(own.size()));
     one.speeds.resize(n, static_cast<Index>(own.size()));
     for (std::size_t c = 0; c < own.size(); ++c) {
-      one.positions.col(static_cast<Index>(c)) =
-          interpolate(recordings.layout.times, own[c].position, one.times);
-      one.speeds.col(static_cast<Index>(c)) = interpolate(recordings.layout.times, own[c].speed, one.times);
+      one.positions.col(static_cast<Index>(c)) = interpolate(times, own[c].position, one.times);
+      one.speeds.col(static_cast<Index>(c)) = interpolate(times, own[c].speed, one.times);
     }
     residuals.push_back(std::move(one));
   }

@@ -1,6 +1,7 @@
 #include "framework/diagnosis/problem/recorded_problem.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/inference/measurement/supposed_input.hpp"
 
 namespace twinmap {
 
@@ -48,26 +50,25 @@ void addStarts(const RefinementModel& model, Index first, std::vector<Index>& st
 
 using Simulators = std::vector<std::unique_ptr<const SimulatorRefiner>>;
 
-/// Which simulator each recording has: that of its trial, or one with its own excitation.
+/// Which simulator each recording has: that of its trial, or one of its own setup.
 std::vector<std::size_t> assignSimulators(const ExperimentSpec& experiment,
                                           const RecordedFeatures& recordings, Simulators& simulators) {
   std::vector<std::size_t> assigned;
   std::map<std::size_t, std::size_t> of_trials;
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
-    const bool has_own = !recordings.excitations.empty() && !recordings.excitations[k].empty();
+    const bool has_own = recordings.findOwn(k) != nullptr;
     const auto known = of_trials.find(recordings.getTrial(k));
     if (!has_own && known != of_trials.end()) {
       assigned.push_back(known->second);
       continue;
     }
     assigned.push_back(simulators.size());
-    ExperimentSpec own = recordings.getExperiment(experiment, k);
-    if (has_own) {
-      copyMeasuredSignals(recordings.excitations[k], own.model);
-    } else {
+    if (!has_own) {
       of_trials[recordings.getTrial(k)] = simulators.size();
     }
-    simulators.push_back(std::make_unique<const SimulatorRefiner>(own, recordings.getLayout(k)));
+    simulators.push_back(std::make_unique<const SimulatorRefiner>(
+        recordings.makeExperiment(experiment, k), recordings.getLayout(k), SimulatorRefiner::Model::kTrusted,
+        has_own ? recordings.findOwn(k)->stated : StatedNoise()));
     simulators.back()->requireNoise();
   }
   return assigned;
@@ -149,12 +150,26 @@ std::size_t findTrial(const ExperimentSpec& combined, const std::string& name) {
 /// The recording behind those that are there, of a trial.
 void appendOfTrial(const RecordedFeatures& one, std::size_t trial, RecordedFeatures& recordings) {
   recordings.features.push_back(one.features.front());
-  recordings.excitations.push_back(one.excitations.empty() ? std::vector<SignalSpec>()
-                                                           : one.excitations.front());
+  recordings.own.push_back(one.own.empty() ? nullptr : one.own.front());
   recordings.trials.push_back(trial);
 }
 
 }  // namespace
+
+const ResponseLayout& RecordedFeatures::getLayout(std::size_t recording) const {
+  const OwnSetup* setup = findOwn(recording);
+  return setup != nullptr ? setup->layout : trials.empty() ? layout : setups[trials[recording]].layout;
+}
+
+ExperimentSpec RecordedFeatures::makeExperiment(const ExperimentSpec& experiment,
+                                                std::size_t recording) const {
+  ExperimentSpec made = trials.empty() ? experiment : experiment.trials[trials[recording]].experiment;
+  if (const OwnSetup* setup = findOwn(recording)) {
+    copyMeasuredSignals(setup->excitation, made.model);
+    made.features = setup->features;
+  }
+  return made;
+}
 
 RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& recordings) const {
   RecordedFeatures selected{layout, {}, known, {}, setups};
@@ -163,8 +178,8 @@ RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& record
       selected.trials.push_back(trials[k]);
     }
     selected.features.push_back(features[k]);
-    if (!excitations.empty()) {
-      selected.excitations.push_back(excitations[k]);
+    if (!own.empty()) {
+      selected.own.push_back(own[k]);
     }
   }
   return selected;
@@ -191,36 +206,35 @@ std::vector<std::string> RecordedFeatures::listOutputs(const ExperimentSpec& exp
 }
 
 void append(const RecordedFeatures& more, RecordedFeatures& recordings) {
+  recordings.own.resize(recordings.features.size());
   recordings.features.insert(recordings.features.end(), more.features.begin(), more.features.end());
-  recordings.excitations.insert(recordings.excitations.end(), more.excitations.begin(),
-                                more.excitations.end());
-  if (!recordings.excitations.empty() && recordings.excitations.size() < recordings.features.size()) {
-    throw MeasurementError("some recordings have a column of the measured excitation, and others have not");
-  }
+  recordings.own.insert(recordings.own.end(), more.own.begin(), more.own.end());
+  recordings.own.resize(recordings.features.size());
 }
 
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const VectorXd& known) {
   RecordedFeatures recording{reader.getLayout(), {}, known};
+  const double beside = kDelayMargin * reader.getExperiment().model.simulation.duration;
+  std::optional<ExperimentSpec> followed = reader.follow(table, start, beside);
   std::optional<MeasurementReader> own;
-  const double duration = reader.getExperiment().model.simulation.duration;
-  if (std::optional<ExperimentSpec> followed =
-          reader.followExcitation(table, start, kDelayMargin * duration)) {
-    recording.excitations.push_back(followed->model.excitation);
+  if (followed) {
     own.emplace(std::move(*followed));
   }
-  AvailableFeatures found = (own ? *own : reader).readAvailableFeatures(table, start);
-  requireNoneStated(found.stated, table.source);
+  const MeasurementReader& used = own ? *own : reader;
+  AvailableFeatures found = used.readAvailableFeatures(table, start);
+  const std::optional<ExperimentSpec> supposed =
+      supposeInput(used, found, known, makePosteriorOptions(used.getExperiment(), kMinPosteriorDraws));
+  if (own || supposed || found.stated.isGiven()) {
+    const ExperimentSpec& experiment = supposed ? *supposed : used.getExperiment();
+    recording.own.push_back(std::make_shared<const OwnSetup>(
+        OwnSetup{experiment.model.excitation, experiment.features, used.getLayout(), found.stated}));
+  }
+  for (const ClippedSample& sample : found.clipped) {
+    found.features[sample.row] = std::numeric_limits<double>::quiet_NaN();
+  }
   recording.features.push_back(std::move(found.features));
   return recording;
-}
-
-TimedRecording readTimedRecording(const MeasurementReader& reader, const Table& table,
-                                  std::optional<double> start, const VectorXd& known) {
-  std::optional<ExperimentSpec> timed = reader.followTimes(table, start);
-  RecordedFeatures recording = timed ? readRecording(MeasurementReader(*timed), table, start, known)
-                                     : readRecording(reader, table, start, known);
-  return {std::move(timed), std::move(recording)};
 }
 
 RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
@@ -272,9 +286,9 @@ SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFe
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   Index before = p;
   for (std::size_t i = 0; i < k; ++i) {
-    before += static_cast<Index>(recordings.getExperiment(experiment, i).model.nuisance.size());
+    before += static_cast<Index>(recordings.makeExperiment(experiment, i).model.nuisance.size());
   }
-  SingleRecording single{recordings.getExperiment(experiment, k), recordings.select({k}), {}};
+  SingleRecording single{recordings.makeExperiment(experiment, k), recordings.select({k}), {}};
   single.recording.layout = recordings.getLayout(k);
   single.recording.known = recordings.getKnown(k);
   single.recording.setups.clear();

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/refiner.hpp"
-#include "framework/inference/trial_reader.hpp"
 
 namespace twinmap {
 
@@ -17,27 +17,35 @@ struct TrialSetup {
   Eigen::VectorXd known;  ///< of the inputs
 };
 
+/// What a recording has in the place of its experiment's (MeasurementReader::follow), and what it states of
+/// its noise or its excitation's has in common (supposeInput).
+struct OwnSetup {
+  std::vector<SignalSpec> excitation;
+  std::vector<FeatureSpec> features;
+  ResponseLayout layout;  ///< of these features
+  StatedNoise stated{};
+};
+
 /// Recordings of one machine, as features of an experiment, or of the trials that it combines.
 struct RecordedFeatures {
   ResponseLayout layout;
   std::vector<Eigen::VectorXd> features;  ///< of each recording, NaN where missing
   Eigen::VectorXd known;                  ///< of the inputs
-  /// Of each recording, its measured tables; none where they are the experiment's. Empty where all are.
-  std::vector<std::vector<SignalSpec>> excitations{};
+  /// Of each recording; null where all is as the experiment says. Empty where it is for all.
+  std::vector<std::shared_ptr<const OwnSetup>> own{};
   std::vector<TrialSetup> setups{};   ///< of the experiment's trials in the place of layout and known
   std::vector<std::size_t> trials{};  ///< of each recording, the number of its trial; empty without trials
 
   std::size_t getTrial(std::size_t recording) const { return trials.empty() ? 0 : trials[recording]; }
-  const ResponseLayout& getLayout(std::size_t recording) const {
-    return trials.empty() ? layout : setups[trials[recording]].layout;
+  const OwnSetup* findOwn(std::size_t recording) const {
+    return own.empty() ? nullptr : own[recording].get();
   }
+  const ResponseLayout& getLayout(std::size_t recording) const;
   const Eigen::VectorXd& getKnown(std::size_t recording) const {
     return trials.empty() ? known : setups[trials[recording]].known;
   }
-  /// The experiment of a recording's trial.
-  const ExperimentSpec& getExperiment(const ExperimentSpec& experiment, std::size_t recording) const {
-    return trials.empty() ? experiment : experiment.trials[trials[recording]].experiment;
-  }
+  /// The experiment of a recording's trial, with what is its own.
+  ExperimentSpec makeExperiment(const ExperimentSpec& experiment, std::size_t recording) const;
   /// The outputs of one recording after the other, by trial ("free.x") where there are trials.
   std::vector<std::string> listOutputs(const ExperimentSpec& experiment) const;
 
@@ -49,23 +57,12 @@ struct RecordedFeatures {
 /// The recordings behind those that are there.
 void append(const RecordedFeatures& more, RecordedFeatures& recordings);
 
-/// One window of a table, with the excitation that was measured in it, where it has its columns. start: time
-/// in it that is 0 of the model; none: as the experiment says. Throws MeasurementError.
+/// One window of a table, as inference reads it: at its own times, with its own excitation
+/// (MeasurementReader::follow), of which what is not known is supposed (supposeInput). Samples at a limit of
+/// their sensor are left out. start: time in it that is 0 of the model; none: as the experiment says.
+/// Throws MeasurementError.
 RecordedFeatures readRecording(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start, const Eigen::VectorXd& known);
-
-/// A recording at its own times.
-struct TimedRecording {
-  std::optional<ExperimentSpec> timed;  ///< whose features are at these times; none: the reader's is
-  RecordedFeatures recording;
-
-  const ExperimentSpec& getExperiment(const ExperimentSpec& stated) const { return timed ? *timed : stated; }
-};
-
-/// The same with features at the recorded times where they would be interpolated
-/// (MeasurementReader::followTimes), as inference takes them.
-TimedRecording readTimedRecording(const MeasurementReader& reader, const Table& table,
-                                  std::optional<double> start, const Eigen::VectorXd& known);
 
 /// All windows of some files, which start at `starts` in each; without them where the experiment says.
 /// known: values of the inputs. Throws MeasurementError, ExperimentError.

@@ -140,7 +140,7 @@ void SegmentedMisfit::update(const VectorXd& response, const MatrixXd& derivativ
   const VectorXd measured = recording_.features.col(fit.segment);
   const auto is_there = measured.array().isFinite();
   const VectorXd difference = is_there.select(measured - recording_.extractor.extract(response), 0.0);
-  const VectorXd residual = recording_.whitener.apply(difference)(recording_.order, 0);
+  const VectorXd residual = recording_.getWhitener(fit.segment).apply(difference)(recording_.order, 0);
   const double misfit = residual.squaredNorm() + precision_.cwiseProduct(calcAhead(fit)).squaredNorm();
   if (!std::isfinite(misfit) || (fit.accepted.size() > 0 && !(misfit < fit.misfit))) {
     retreat(fit);
@@ -153,7 +153,7 @@ void SegmentedMisfit::update(const VectorXd& response, const MatrixXd& derivativ
   } else {
     MatrixXd slopes = recording_.extractor.extract(derivatives);
     slopes = is_there.replicate(1, slopes.cols()).select(slopes, 0.0);
-    takeStep(residual, recording_.whitener.apply(slopes)(recording_.order, Eigen::all), fit);
+    takeStep(residual, recording_.getWhitener(fit.segment).apply(slopes)(recording_.order, Eigen::all), fit);
   }
   fit.state = limit(fit.accepted + fit.local.step, fit.segment);
   fit.active = fit.local.gain > kLastGain;
@@ -248,6 +248,20 @@ std::vector<LocalMisfit> SegmentedMisfit::linearizeAll(const MatrixXd& points) {
     }
   });
   return all;
+}
+
+MatrixXd SegmentedMisfit::findStates(const VectorXd& parameters) {
+  const VectorXd at = box_.normalize(parameters);
+  MatrixXd states(recording_.scales.size(), 0);
+  if (!linearizeAll(at).front().status.ok) {
+    return states;
+  }
+  const Anchor& anchor = *findNearest(at);
+  states.resize(states.rows(), recording_.starts.size());
+  for (Index k = 0; k < states.cols(); ++k) {
+    states.col(k) = anchor.best[static_cast<std::size_t>(k)].state;
+  }
+  return states;
 }
 
 VectorXd SegmentedMisfit::evaluate(const MatrixXd& points) {

@@ -23,6 +23,9 @@ class SegmentedMisfit final : public MeasuredMisfit {
   /// Without derivatives: the response moves with the states as at the nearest point that was linearised.
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points) override;
 
+  /// The best states at parameters in their units, s x S; without columns where they cannot be simulated.
+  Eigen::MatrixXd findStates(const Eigen::VectorXd& parameters);
+
  private:
   /// A segment at the best state of a point: what another point begins with.
   struct BestState {

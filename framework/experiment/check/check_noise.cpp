@@ -61,8 +61,9 @@ void checkUnknown(const OutputNoiseSpec& spec, const std::vector<FeatureSpec>& f
   }
 }
 
-/// What is reduced is weighed by its noise, and that of scores is taken to be independent.
-void checkReduced(const ExperimentSpec& experiment) {
+}  // namespace
+
+std::string findReductionFault(const ExperimentSpec& experiment) {
   const NoiseSpec& noise = experiment.noise;
   bool any = false, all = true;
   for (const FeatureSpec& feature : experiment.features) {
@@ -71,25 +72,21 @@ void checkReduced(const ExperimentSpec& experiment) {
     any = any || reduced;
     all = all && reduced;
   }
-  const auto reject = [&](const std::string& rule) {
-    throw ExperimentError({experiment.name.where.file, 0, 0, "features"}, "", rule);
-  };
   if (any && !all) {
-    reject("are reduced in part; give 'reduce: automatic' to all of them, which must be samples");
+    return "are reduced in part; give 'reduce: automatic' to all of them, which must be samples";
   }
   if (any && !noise.correlation.empty()) {
-    reject("are reduced, but noise.correlation is given; leave 'reduce' or 'correlation' out");
+    return "are reduced, but noise.correlation is given; leave 'reduce' or 'correlation' out";
   }
   for (const Name& output : any ? collectOutputs(experiment.features) : std::vector<Name>{}) {
     for (const OutputNoiseSpec& spec : noise.stddev) {
       if (spec.name.text == output.text && noise.scale * spec.stddev <= 0.0) {
-        reject("are reduced, which needs noise on each: noise.stddev of '" + output.text + "' is 0");
+        return "are reduced, which needs noise on each: noise.stddev of '" + output.text + "' is 0";
       }
     }
   }
+  return "";
 }
-
-}  // namespace
 
 void requireStatedNoise(const ExperimentSpec& experiment) {
   for (const OutputNoiseSpec& spec : experiment.noise.stddev) {
@@ -116,7 +113,9 @@ void checkNoise(const ExperimentSpec& experiment) {
     requireKnown(correlation.name, outputs, "an output");
     checkCorrelation(correlation, experiment.features);
   }
-  checkReduced(experiment);
+  if (const std::string fault = findReductionFault(experiment); !fault.empty()) {
+    throw ExperimentError({experiment.name.where.file, 0, 0, "features"}, "", fault);
+  }
   if (collectOutputs(experiment.features).empty()) {
     return;
   }

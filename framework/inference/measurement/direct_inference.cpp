@@ -15,11 +15,11 @@
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/alternation.hpp"
-#include "framework/inference/measurement/excitation_noise.hpp"
 #include "framework/inference/measurement/measurement_faults.hpp"
 #include "framework/inference/measurement/spikes.hpp"
 #include "framework/inference/measurement/supposed_input.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
+#include "framework/inference/measurement/unstated_noise.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/models/model_remarks.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -147,23 +147,8 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   return infer(table, start, found, known);
 }
 
-std::optional<ExperimentSpec> DirectInference::followTable(const Table& table,
-                                                           std::optional<double> start) const {
-  const ExperimentSpec& own = reader_.getExperiment();
-  const bool may_have_modes =
-      reader_.getLayout().modes > 0 && reader_.getLayout().times.size() > 0 && !own.measurement.modes;
-  const std::filesystem::path modes = findModesFile(table.source, own.measurement);
-  if (!may_have_modes || !std::filesystem::exists(modes)) {
-    return reader_.follow(table, start);
-  }
-  ExperimentSpec beside = own;
-  beside.measurement.modes = Name{modes.filename().string(), {}};
-  std::optional<ExperimentSpec> followed = MeasurementReader(beside).follow(table, start);
-  return followed ? followed : std::make_optional(std::move(beside));
-}
-
 DirectInference::LikeRecording* DirectInference::follow(const Table& table, std::optional<double> start) {
-  std::optional<ExperimentSpec> experiment = followTable(table, start);
+  std::optional<ExperimentSpec> experiment = reader_.follow(table, start);
   if (!experiment) {
     return nullptr;
   }
@@ -180,19 +165,8 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
                                            const AvailableFeatures& read, const Eigen::VectorXd& known) {
   requireModes(read, reader_, table.source);
   AvailableFeatures found = read;
-  std::optional<SimulatorRefiner> own;  // with the noise that the measurement and its excitation state
-  StatedNoise stated = found.stated;
-  if (std::optional<SupposedInput> input = supposeInput(reader_, found, known, options_)) {
-    stated.common = input->common;
-    found.features += reader_.getExtractor().extract(input->offset);
-    found.response += input->offset;
-    const ResponseLayout& layout = reader_.getLayout();
-    own.emplace(input->experiment, layout,
-                shareAmongThreads(makeTrustedSimulator(input->experiment.model, layout.times, layout.modes)),
-                stated);
-  } else if (stated.isGiven()) {
-    own.emplace(reader_.getExperiment(), reader_.getLayout(), simulator_.getSimulator().clone(), stated);
-  }
+  const std::unique_ptr<const SimulatorRefiner> own =
+      makeOwnSimulator(reader_, simulator_, found, known, options_);
   const SimulatorRefiner& simulator = own ? *own : simulator_;
   InferredMeasurement inferred = infer(simulator, found.features, known, found.clipped);
   tryWithoutSpikes(simulator, found, known, inferred);
@@ -200,7 +174,6 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   inferred.source = table.source;
   inferred.start = reader_.getStart(table, start);
   inferred.left_out = found.remarks;
-  inferred.states_noise = own.has_value();
   const std::vector<std::string> bridged = describeBridged(reader_.getExperiment().model);
   inferred.remarks.insert(inferred.remarks.end(), bridged.begin(), bridged.end());
   if (tryClock(found, known, inferred)) {
@@ -209,7 +182,8 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   inferred.fault = explainMisfit(simulator, found, known, *inferred.posterior);
   inferred.against = listAgainst(found, known, inferred);
   if (inferred.fault.empty()) {
-    const std::vector<std::string> noisy = describeInputNoise(simulator, found, known, *inferred.posterior);
+    const std::vector<std::string> noisy =
+        describeUnstatedNoise(reader_, simulator, found, known, *inferred.posterior);
     inferred.remarks.insert(inferred.remarks.end(), noisy.begin(), noisy.end());
   }
   return inferred;
@@ -321,46 +295,6 @@ void DirectInference::tryWithoutAlternation(const SimulatorRefiner& simulator, A
   }
 }
 
-std::vector<std::string> DirectInference::describeInputNoise(const SimulatorRefiner& simulator,
-                                                             const AvailableFeatures& found,
-                                                             const Eigen::VectorXd& known,
-                                                             const PosteriorEstimate& posterior) const {
-  constexpr double kShare = 0.01;       // of the signal's root mean square; the effect of less is linear
-  constexpr Eigen::Index kMost = 3000;  // features: its cost is their cube
-  const ModelSpec& model = reader_.getExperiment().model;
-  std::vector<std::string> described;
-  if (!posterior.fit || !posterior.fit->isSimulated() || !simulator.samplesFast() ||
-      !areSamples(reader_.getExperiment().features) ||
-      static_cast<Eigen::Index>(found.available.size()) > kMost) {
-    return described;
-  }
-  std::optional<LinearizedMeasurement> local;
-  for (std::size_t s = 0; s < model.excitation.size(); ++s) {
-    double size = 0.0;
-    const std::optional<ModelSpec> supposed = supposeNoise(model, s, kShare, size);
-    if (!supposed) {
-      continue;
-    }
-    local = local ? local : simulator.linearize(found.features, known, posterior.fit->best);
-    if (!local || !local->whitener) {
-      return described;
-    }
-    Eigen::VectorXd point(posterior.fit->best.size() + known.size());
-    point << posterior.fit->best, known;
-    const Eigen::MatrixXd responses = calcUnknownResponses(*supposed, reader_.getLayout(), point);
-    const double found_size = findNoiseSize(*local, simulator.getExtractor(), responses, *posterior.fit);
-    if (found_size > 0.0) {
-      described.push_back(
-          fmt::format("noise of {} of about {} {} ({} % of it) may be what is left, and moves the parameters "
-                      "by more than "
-                      "their standard deviations say: if its sensor has so much, state it as measured.noise",
-                      model.excitation[s].name.text, toShortText(found_size * size, 2),
-                      model.excitation[s].unit, toShortText(100.0 * kShare * found_size, 2)));
-    }
-  }
-  return described;
-}
-
 bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
                                InferredMeasurement& inferred) const {
   constexpr Eigen::Index kFewest = 20;  // samples, of which a clock can be told
@@ -401,11 +335,6 @@ std::string DirectInference::explainMisfit(const SimulatorRefiner& simulator, co
   };
   return explainByFault(found.response, reader_.getLayout(), fit.chi_square, fit.residual.size(), calcMisfit,
                         listMeasured(reader_.getExperiment().model));
-}
-
-std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec) {
-  return spec.modes ? measurement.parent_path() / spec.modes->text
-                    : std::filesystem::path(measurement).replace_extension(".modes.csv");
 }
 
 InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-
 #include "framework/inference/measurement/measurement_inference.hpp"
 #include "framework/inference/refiner.hpp"
 
@@ -52,10 +50,8 @@ class DirectInference final : public MeasurementInference {
                              const SimulatorFit& fit) const;
   struct LikeRecording;
 
-  /// The experiment with the times and the excitation of a table, and the modes that stand beside it; none
-  /// where all is as the experiment says.
-  std::optional<ExperimentSpec> followTable(const Table& table, std::optional<double> start) const;
-  /// What infers with these; null where they are the experiment's.
+  /// What infers with the times and the excitation of a table (MeasurementReader::follow); null where they
+  /// are the experiment's.
   LikeRecording* follow(const Table& table, std::optional<double> start);
 
   InferredMeasurement infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
@@ -72,12 +68,6 @@ class DirectInference final : public MeasurementInference {
   void tryWithoutAlternation(const SimulatorRefiner& simulator, AvailableFeatures& found,
                              const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
 
-  /// What noise of a measured excitation, where none is stated, may have to do with what is left, a phrase
-  /// for each signal of which it is significant (once in a thousand) and that would leave nothing else.
-  std::vector<std::string> describeInputNoise(const SimulatorRefiner& simulator,
-                                              const AvailableFeatures& found, const Eigen::VectorXd& known,
-                                              const PosteriorEstimate& posterior) const;
-
   /// The simple fault of the recording that explains a gross misfit, or "".
   std::string explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,
                             const Eigen::VectorXd& known, const PosteriorEstimate& posterior) const;
@@ -90,9 +80,5 @@ class DirectInference final : public MeasurementInference {
   std::vector<std::string> unused_;                      // parameters
   std::unique_ptr<LikeRecording> followed_;              // of the last table that was followed
 };
-
-/// Where the modes of a measurement stand beside its outputs: where the experiment says, else in the file of
-/// the same name that ends in ".modes.csv".
-std::filesystem::path findModesFile(const std::filesystem::path& measurement, const MeasurementSpec& spec);
 
 }  // namespace twinmap

@@ -17,7 +17,7 @@ InferredMeasurement MeasurementInference::inferResponse(const Table& table, std:
                                                         const Eigen::VectorXd& features,
                                                         const Eigen::VectorXd& known) {
   InferredMeasurement inferred = infer(features, known);
-  if (response.allFinite()) {  // not of features that were measured themselves
+  if (response.array().isFinite().any()) {  // not of features that were measured themselves
     inferred.fault = findFault(response, known, inferred);
   }
   inferred.source = table.source;

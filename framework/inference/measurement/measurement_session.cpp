@@ -83,8 +83,11 @@ InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<
   if (!samplesByNeed()) {
     return MeasurementInference::infer(table, start, known);
   }
+  if (getReader().followTimes(table, start)) {
+    return getDirect().infer(table, start, known);
+  }
   const AvailableFeatures found = getReader().readAvailableFeatures(table, start);
-  if (!found.isComplete() || getReader().followTimes(table, start)) {
+  if (!found.isComplete()) {
     return getDirect().infer(table, start, known);
   }
   InferredMeasurement inferred = inferResponse(table, start, found.response, found.features, known);

@@ -36,6 +36,12 @@ VectorXd calcLikeliest(const MatrixXd& responses, const VectorXd& residual) {
                                        responses.transpose() * residual);
 }
 
+struct SupposedInput {
+  ExperimentSpec experiment;  ///< with the likeliest excitation
+  MatrixXd common;            ///< G, rows x r
+  VectorXd offset;            ///< G m, rows
+};
+
 /// One measurement, from one supposition to the next.
 class Supposing {
  public:
@@ -110,8 +116,8 @@ class Supposing {
 
 }  // namespace
 
-std::optional<SupposedInput> supposeInput(const MeasurementReader& reader, const AvailableFeatures& found,
-                                          const VectorXd& known, SimulatorPosteriorOptions options) {
+std::optional<ExperimentSpec> supposeInput(const MeasurementReader& reader, AvailableFeatures& found,
+                                           const VectorXd& known, SimulatorPosteriorOptions options) {
   constexpr int kTimes = 3;  // what the first moves by much, the others move by little
   if (!hasUnknownExcitation(reader.getExperiment().model) || !areSamples(reader.getExperiment().features)) {
     return std::nullopt;
@@ -124,7 +130,25 @@ std::optional<SupposedInput> supposeInput(const MeasurementReader& reader, const
       return std::nullopt;
     }
   }
-  return supposing.take();
+  SupposedInput input = supposing.take();
+  found.features += reader.getExtractor().extract(input.offset);
+  found.response += input.offset;
+  found.stated.common = std::move(input.common);
+  return std::move(input.experiment);
+}
+
+std::unique_ptr<const SimulatorRefiner> makeOwnSimulator(const MeasurementReader& reader,
+                                                         const SimulatorRefiner& usual,
+                                                         AvailableFeatures& found, const VectorXd& known,
+                                                         const SimulatorPosteriorOptions& options) {
+  const std::optional<ExperimentSpec> supposed = supposeInput(reader, found, known, options);
+  if (!supposed && !found.stated.isGiven()) {
+    return nullptr;
+  }
+  const ResponseLayout& layout = reader.getLayout();
+  return std::make_unique<const SimulatorRefiner>(
+      supposed ? *supposed : reader.getExperiment(), layout,
+      supposed ? makeTrustedTeam(*supposed, layout) : usual.getSimulator().clone(), found.stated);
 }
 
 }  // namespace twinmap

@@ -1,23 +1,29 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "framework/inference/measurement_reader.hpp"
-#include "framework/inference/simulator_sampler.hpp"
+#include "framework/inference/refiner.hpp"
 
 namespace twinmap {
 
-/// A measurement whose excitation is not all known, about what its response says of that: with n of unit
-/// variance in G n, the response to excitation e + n is f(e + m) + G (n - m) about the likeliest m.
-struct SupposedInput {
-  ExperimentSpec experiment;  ///< with the likeliest excitation
-  Eigen::MatrixXd common;     ///< G, rows x r, of outputs of unknown noise in units of that (StatedNoise)
-  Eigen::VectorXd offset;     ///< G m, rows: what the measured response is more than one to compare it with
-};
+/// Supposes of a measurement whose excitation is not all known (hasUnknownExcitation) the likeliest, by what
+/// its response says: with n of unit variance in G n, the response to excitation e + n is f(e + m) + G (n -
+/// m) about the likeliest m. The experiment with excitation e + m; found is what was measured, G m more, and
+/// states G as what its rows have in common (of outputs of unknown noise in units of that). None, and found
+/// as it was, where all of the excitation is known or nothing can be simulated. Three times a fit of the
+/// parameters, then of the excitation. Cost: three posteriors of few draws, three times
+/// calcUnknownResponses().
+std::optional<ExperimentSpec> supposeInput(const MeasurementReader& reader, AvailableFeatures& found,
+                                           const Eigen::VectorXd& known, SimulatorPosteriorOptions options);
 
-/// Three times a fit of the parameters, then of the excitation. None where all of the excitation is known or
-/// nothing can be simulated. Cost: three posteriors of few draws, three times calcUnknownResponses().
-std::optional<SupposedInput> supposeInput(const MeasurementReader& reader, const AvailableFeatures& found,
-                                          const Eigen::VectorXd& known, SimulatorPosteriorOptions options);
+/// The simulator of a measurement that states noise of its own, or of its excitation (supposeInput); null
+/// where `usual`, that of the reader's experiment, will do.
+std::unique_ptr<const SimulatorRefiner> makeOwnSimulator(const MeasurementReader& reader,
+                                                         const SimulatorRefiner& usual,
+                                                         AvailableFeatures& found,
+                                                         const Eigen::VectorXd& known,
+                                                         const SimulatorPosteriorOptions& options);
 
 }  // namespace twinmap

@@ -32,4 +32,7 @@ std::optional<ModelSpec> supposeNoise(const ModelSpec& model, std::size_t signal
 /// What was lost of measured excitations and interpolated, a phrase each.
 std::vector<std::string> describeBridged(const ModelSpec& model);
 
+/// Leaves `count` samples of a table from `first` on, and what of them is not known.
+void cutTable(std::size_t first, std::size_t count, TableSpec& table);
+
 }  // namespace twinmap

@@ -6,16 +6,20 @@
 #include <cmath>
 #include <numeric>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/measured_signals.hpp"
 #include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/noise/feature_noise.hpp"
+#include "framework/estimation/segments/segmented_misfit.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/derived_values.hpp"
+#include "framework/inference/measurement/unknown_excitation.hpp"
 #include "framework/inference/refiner.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
+#include "framework/simulation/model_numbers.hpp"
 
 namespace twinmap {
 
@@ -44,7 +48,8 @@ ReadSegments readSegments(const Table& table, double start, const ExperimentSpec
                           const SegmentGrid& grid) {
   const ExperimentSpec whole = makeRecordingExperiment(experiment, grid);
   const ResponseLayout layout = makeLayout(whole);
-  AvailableResponse read = readAvailable(table, whole.measurement, layout, start, grid.interval);
+  AvailableResponse read =
+      readAvailable(table, whole.measurement, layout, start, grid.interval, whole.features);
   if (read.stddev.size() > 0) {
     requireNoneStated({read.stddev, {}}, table.source);
   }
@@ -56,17 +61,28 @@ ReadSegments readSegments(const Table& table, double start, const ExperimentSpec
   return segments;
 }
 
-NoiseWhitener makeWhitener(const ExperimentSpec& experiment, const ResponseLayout& layout,
-                           const FeatureExtractor& extractor) {
+void requireKnownNoise(const ExperimentSpec& experiment) {
   for (const OutputNoiseSpec& noise : experiment.noise.stddev) {
     if (noise.stddev.unknown) {
       throw ExperimentError(noise.stddev.where, noise.name.text,
                             "must be known for inference in segments: give its noise a number");
     }
   }
-  const FeatureNoise noise(extractor, ResponseNoise(experiment.noise, layout), experiment.seed);
+}
+
+/// common: of the response's rows (ResponseNoise::share).
+NoiseCovariance calcCovariance(const ExperimentSpec& experiment, const ResponseLayout& layout,
+                               const FeatureExtractor& extractor, const MatrixXd& common) {
+  ResponseNoise noise(experiment.noise, layout);
+  noise.share(common);
+  return FeatureNoise(extractor, noise, experiment.seed).calcCovariance({});
+}
+
+NoiseWhitener makeWhitener(const ExperimentSpec& experiment, const ResponseLayout& layout,
+                           const FeatureExtractor& extractor) {
+  requireKnownNoise(experiment);
   try {
-    return NoiseWhitener(noise.calcCovariance({}));
+    return NoiseWhitener(calcCovariance(experiment, layout, extractor, {}));
   } catch (const std::invalid_argument& error) {
     throw ExperimentError(std::string(error.what()) +
                           ": give every output that features read a 'noise.stddev'");
@@ -93,7 +109,7 @@ std::vector<ParameterSpec> collectShared(const ModelSpec& segment, std::size_t s
 struct PreparedSegments {
   ExperimentSpec experiment;  ///< of a segment
   std::unique_ptr<Simulator> simulator;
-  std::shared_ptr<const SegmentedRecording> recording;
+  std::shared_ptr<SegmentedRecording> recording;
 };
 
 /// whole: of the recording, with its excitation.
@@ -109,7 +125,7 @@ PreparedSegments prepare(const ExperimentSpec& whole, const SegmentGrid& grid, c
                           simulator->getEngine() + ")");
   }
   FeatureExtractor extractor = makeExtractor(segment, layout);
-  NoiseWhitener whitener = makeWhitener(segment, layout, extractor);
+  std::vector<NoiseWhitener> whiteners{makeWhitener(segment, layout, extractor)};
   std::vector<Index> order = orderByTime(extractor.getInfos());
   MatrixXd features(extractor.getFeatureCount(), grid.count);
   VectorXd starts(grid.count);
@@ -117,8 +133,8 @@ PreparedSegments prepare(const ExperimentSpec& whole, const SegmentGrid& grid, c
     features.col(k) = extractor.extract(samples[static_cast<std::size_t>(k)].reshaped());
     starts[k] = grid.calcStart(k);
   }
-  auto recording = std::make_shared<const SegmentedRecording>(SegmentedRecording{
-      collectShared(segment.model, states.size()), known, std::move(extractor), std::move(whitener),
+  auto recording = std::make_shared<SegmentedRecording>(SegmentedRecording{
+      collectShared(segment.model, states.size()), known, std::move(extractor), std::move(whiteners),
       std::move(order), std::move(features), std::move(starts), guess.states, guess.scales});
   return {segment, std::move(simulator), std::move(recording)};
 }
@@ -147,8 +163,69 @@ PosteriorProblem makeProblem(const PreparedSegments& prepared) {
   return {unknown, prepared.experiment.model.priors, {trial}, static_cast<Index>(unknown.size())};
 }
 
+/// The part of the excitation that acts on a segment, so that each of its samples counts by itself.
+ModelSpec takeExcitation(const ModelSpec& segment, const VectorXd& point, double start) {
+  constexpr Index kReach = 12;  // samples beside: as far as a spline reaches
+  ModelSpec taken = segment;
+  ModelNumbers numbers(segment);
+  numbers.update(point);
+  for (SignalSpec& signal : taken.excitation) {
+    for (TableSpec& table : signal.tables) {
+      const Expression* delay = table.findDelay();
+      const double late = delay == nullptr ? 0.0 : numbers.calc(*delay, {"measured", "delay", "s"});
+      const VectorXd times = VectorXd::Map(table.times.data(), static_cast<Index>(table.times.size()));
+      const RowRange rows = findRows(times, start + late, start + late + segment.simulation.duration, kReach);
+      if (rows.count >= 2) {
+        cutTable(static_cast<std::size_t>(rows.first), static_cast<std::size_t>(rows.count), table);
+      }
+    }
+  }
+  return taken;
+}
+
+/// Whitens each segment by what is not known of the excitation within it as well, at the best parameters;
+/// what acted before is in its initial state. False where these cannot be simulated.
+bool countUnknownExcitation(const VectorXd& best, PreparedSegments& prepared) {
+  SegmentedRecording& recording = *prepared.recording;
+  const MatrixXd states = SegmentedMisfit(*prepared.simulator, recording).findStates(best);
+  const ResponseLayout& layout = prepared.simulator->getLayout();
+  std::vector<NoiseWhitener> whiteners;
+  SearchStage stage("what the unknown of the excitation does", static_cast<int>(states.cols()));
+  for (Index k = 0; k < states.cols(); ++k) {
+    VectorXd point(best.size() + states.rows() + recording.known.size() + 1);
+    point << best, states.col(k), recording.known, recording.starts[k];
+    const MatrixXd common = calcUnknownResponses(
+        takeExcitation(prepared.experiment.model, point, recording.starts[k]), layout, point);
+    const auto missing = recording.features.col(k).array().isNaN();
+    const VectorXd apart = missing.select(1.0, VectorXd::Constant(missing.size(), NAN));  // of no weight
+    whiteners.emplace_back(
+        calcCovariance(prepared.experiment, layout, recording.extractor, common).replace(apart));
+    stage.advance();
+  }
+  if (whiteners.empty()) {
+    return false;
+  }
+  recording.whiteners = std::move(whiteners);
+  return true;
+}
+
+SimulatorPosterior sample(PreparedSegments& prepared, const SimulatorPosteriorOptions& options) {
+  constexpr int kTimes = 2;  // what the first moves by much, the second moves by little
+  const MatrixXd none(prepared.recording->unknown.size(), 0);
+  SimulatorPosterior posterior = samplePosterior(makeProblem(prepared), none, options);
+  const bool is_unknown = hasUnknownExcitation(prepared.experiment.model);
+  for (int i = 0; is_unknown && i < kTimes && posterior.best.size() > 0; ++i) {
+    const VectorXd best = posterior.best;
+    if (!countUnknownExcitation(best, prepared)) {
+      break;
+    }
+    posterior = samplePosterior(makeProblem(prepared), best, options);
+  }
+  return posterior;
+}
+
 void requireComplete(const SegmentedRecording& recording, const std::string& source) {
-  if (!recording.whitener.isDiagonal() && recording.features.hasNaN()) {
+  if (!recording.whiteners.front().isDiagonal() && recording.features.hasNaN()) {
     throw MeasurementError(source +
                            ": lacks samples, which noise that is not white does not allow in segments");
   }
@@ -186,20 +263,21 @@ InferredMeasurement SegmentInference::infer(const Table& table, std::optional<do
   ExperimentSpec whole = makeRecordingExperiment(experiment_, grid);
   replaceMeasuredSignals(whole, table, zero);
   const ReadSegments read = readSegments(table, zero, whole, grid);
-  const PreparedSegments prepared = prepare(whole, grid, known_, read.samples);
+  PreparedSegments prepared = prepare(whole, grid, known_, read.samples);
   requireComplete(*prepared.recording, table.source);
 
   InferredMeasurement inferred;
   inferred.source = table.source;
   inferred.start = zero;
   inferred.left_out = read.remarks;
+  inferred.remarks = describeBridged(whole.model);
   inferred.segments =
       SegmentReport{grid.count, grid.getLength(), static_cast<int>(prepared.recording->scales.size()),
                     listSamples(prepared)};
   const ModelSpec& model = prepared.experiment.model;
-  inferred.posterior = makePosteriorEstimate(
-      samplePosterior(makeProblem(prepared), MatrixXd(prepared.recording->unknown.size(), 0), options_),
-      prepared.recording->unknown, static_cast<Index>(model.parameters.size()), inferred.segments->samples);
+  inferred.posterior =
+      makePosteriorEstimate(sample(prepared, options_), prepared.recording->unknown,
+                            static_cast<Index>(model.parameters.size()), inferred.segments->samples);
   inferred.quantities = makeDerivedQuantities(experiment_);
   inferred.prior = findStatedPrior(model);
   return inferred;

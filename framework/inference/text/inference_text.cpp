@@ -205,6 +205,17 @@ bool isBrief(const std::vector<std::string>& statuses) {
 
 }  // namespace
 
+std::string describeReading(const InferredMeasurement& inferred, const std::string& begin) {
+  std::string text;
+  for (const std::string& remark : inferred.remarks) {
+    text += begin + remark + "\n";
+  }
+  for (const std::string& missing : inferred.left_out) {
+    text += begin + "left out: " + missing + "\n";
+  }
+  return text;
+}
+
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
@@ -221,12 +232,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   if (inferred.prior) {
     text += "  prior: " + inferred.prior->text + "\n";
   }
-  for (const std::string& remark : inferred.remarks) {
-    text += "  " + remark + "\n";
-  }
-  for (const std::string& missing : inferred.left_out) {
-    text += "  left out: " + missing + "\n";
-  }
+  text += describeReading(inferred, "  ");
   if (inferred.refined && !sampled) {
     text += describeRefined(*inferred.refined);
   }

@@ -57,4 +57,7 @@ std::string makeProfileCsvRows(const InferredMeasurement& inferred,
 /// "the largest misfit is in y between 0.1 s and 0.4 s"; "" without a trust model.
 std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features);
 
+/// How a measurement was read and what of it was left out, a line each, which begins so.
+std::string describeReading(const InferredMeasurement& inferred, const std::string& begin);
+
 }  // namespace twinmap

@@ -6,7 +6,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
-#include "framework/inference/joint_inference.hpp"
+#include "framework/inference/joint/joint_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/explain_notice.hpp"
 #include "framework/inference/text/inference_text.hpp"
@@ -193,8 +193,11 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
                 ? explainBriefly(Notice::kUnreliable, inferred.joint.message)
                 : explainUnreliable(inferred.joint.message, inferred.asked);
   }
-  return text + makeAloneTable(inferred, parameters) +
-         fmt::format("  sampled on the simulator: {} simulations\n", inferred.simulations);
+  text += makeAloneTable(inferred, parameters);
+  for (const RecordingInference& one : inferred.alone) {
+    text += describeReading(one.inferred, "  " + one.label + ": ");
+  }
+  return text + fmt::format("  sampled on the simulator: {} simulations\n", inferred.simulations);
 }
 
 std::string makeJointCsvRows(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {

@@ -124,19 +124,13 @@ class Replayer {
   }
 
  private:
-  const SimulatorFit* findSimulated() const {
-    const std::optional<PosteriorEstimate>& posterior = replay_.inferred.posterior;
-    return posterior && posterior->fit && posterior->fit->isSimulated() ? &*posterior->fit : nullptr;
-  }
-
   /// That which was found, in the place of what nobody stated.
   void takeNoise() {
-    const SimulatorFit* fit = findSimulated();
-    const std::vector<std::string>& names = window_.layout.output_names;
+    const SimulatorFit* fit = findFit(replay_.inferred);
     for (const NoiseReport& report : fit != nullptr ? fit->noise : std::vector<NoiseReport>()) {
-      const auto output = std::find(names.begin(), names.end(), report.output) - names.begin();
-      if (!report.isStated() && output < static_cast<Index>(names.size())) {
-        window_.noise_stddev.segment(window_.layout.getRow(output, 0), window_.layout.times.size())
+      if (!report.isStated()) {
+        window_.noise_stddev
+            .segment(window_.layout.getRow(report.found.output, 0), window_.layout.times.size())
             .setConstant(report.stddev);
       }
     }
@@ -149,7 +143,7 @@ class Replayer {
     if (estimate_.method != EstimationMethod::kPosterior) {
       return estimate_.isRefined() ? inferred.refined->point : inferred.explanation;
     }
-    const SimulatorFit* fit = findSimulated();
+    const SimulatorFit* fit = findFit(replay_.inferred);
     if (fit == nullptr) {
       throw std::runtime_error("nothing could be simulated within the bounds");
     }

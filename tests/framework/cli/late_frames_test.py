@@ -126,6 +126,43 @@ class LateFrames(FolderTestCase):
             self.assertLess(abs(estimate["mean"] - value), 4 * estimate["sd"], name)
             self.assertGreater(estimate["sd"], silent["parameters"][name]["sd"], name)
 
+    def record_noisily(self, share):
+        """Two recordings of the cart, whose excitation has noise of a share of its rms."""
+        files = []
+        for seed in (8, 9):
+            t, u, x = record("cart", False, seed, 2e-4)
+            level = share * np.std(u)
+            self.write((t, u + level * np.random.default_rng(seed).normal(size=len(u)), x))
+            files.append((self.folder / "m.csv").rename(self.folder / f"m{seed}.csv"))
+        (self.folder / "m.csv").write_text(files[0].read_text())
+        return level, files
+
+    def call(self, *arguments):
+        result = call(*arguments, "--json")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
+    def test_the_noise_of_an_excitation_counts_in_all_recordings(self):
+        level, files = self.record_noisily(0.03)
+        path = self.folder / "experiment.yaml"
+        path.write_text(write_experiment("cart", False, 2e-4))
+        silent = self.call("infer", path, *files, "--joint")
+        self.assertIn("model_mismatch", silent["statuses"])
+        self.assertIn("noise of u of about", str([one["remarks"] for one in silent["trials"]]))
+        path.write_text(write_experiment("cart", False, 2e-4, f", noise: {level:.6g}"))
+        stated = self.call("infer", path, *files, "--joint")
+        self.assertEqual(stated["statuses"], ["ok"])
+        for name, value in MACHINES["cart"][2].items():
+            estimate = stated["parameters"][name]
+            self.assertLess(abs(estimate["mean"] - value), 4 * estimate["sd"], name)
+            for one, other in zip(stated["trials"], silent["trials"]):
+                self.assertGreater(one["parameters"][name]["sd"], other["parameters"][name]["sd"], name)
+        before = self.call("diagnose", path, *files)["before"]
+        self.assertLess(before["chi_square"], before["degrees"] + 4 * np.sqrt(2 * before["degrees"]))
+        predicted = self.call("validate", path, files[0], "--against", files[1])["predictions"][0]
+        self.assertTrue(predicted["passed"])
+        self.assertLess(predicted["rms"], 1.3)
+
     def test_empty_cells_and_stamps_that_repeat_are_no_obstacle(self):
         t, u, x = record("cart", True, 7, 2e-4)
         rows = [f"{a:.9g},{b:.9g},{c:.9g}" for a, b, c in zip(t, u, x)]

@@ -143,6 +143,38 @@ class Recorders(FolderTestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertLess(json.loads(result.stdout)["predictions"][0]["rms"], 1.2)
 
+    def test_all_commands_take_several_recordings_at_their_own_times(self):
+        """The speed at a third of the rate, between the times of the features, by a clock of its own."""
+        rows = slice(3, None, 3)
+        self.write("sparse.csv", {"clock": self.t[rows] + 0.003 + 7, "v": self.v_at(self.t[rows] + 0.003)})
+        own = "columns: {v: {column: v, file: sparse.csv, time: clock, delay: 7}}, start"
+        for sensor in ("", ", sensor: {delay: 0}", ", sensor: {delay: lag}"):
+            lag = "lag: {bounds: [-0.01, 0.01], unit: s}, " if "lag" in sensor else ""
+            experiment = (
+                self.window().replace("v: {speed: x}", f"v: {{speed: x{sensor}}}").replace("start: 0}", f"{own}: 0}}")
+            )
+            experiment = experiment.replace("nuisance: {", "nuisance: {" + lag).replace("duration: 3", "duration: 3.1")
+            joint = self.infer(experiment, "m.csv", "--joint", "--start", 1, "--start", 4)
+            for one in [joint, *joint["trials"]]:
+                self.assert_right(one, ["k", "d"])
+            degrees = sum(one["trust"]["degrees"] for one in joint["trials"]) + 2  # k and d count once
+            path, recording = self.folder / "experiment.yaml", self.folder / "m.csv"
+            (self.folder / "other.yaml").write_text(experiment.replace("name: recorders", "name: other"))
+            windows = ("--start", 1, "--start", 4, "--json")
+            diagnosis = self.call("diagnose", path, recording, *windows)
+            self.assertAlmostEqual(diagnosis["before"]["degrees"], degrees, delta=1.5)
+            selected = self.call("select", path, self.folder / "other.yaml", recording, *windows)
+            self.assertAlmostEqual(selected["structures"][0]["degrees"], degrees, delta=1.5)
+            predicted = self.call(
+                "validate", path, recording, "--start", 4, "--against", recording, "--against-start", 1, "--json"
+            )
+            self.assertLess(predicted["predictions"][0]["rms"], 1.2)
+
+    def call(self, *arguments):
+        result = call(*arguments)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads(result.stdout)
+
     def test_an_excitation_that_cannot_follow_a_trigger_is_named(self):
         path = self.folder / "experiment.yaml"
         path.write_text(self.window("{when: x > 5}"))

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
-#include "framework/inference/joint_inference.hpp"
+#include "framework/inference/joint/joint_inference.hpp"
 
 namespace twinmap {
 namespace {

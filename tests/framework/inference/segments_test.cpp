@@ -121,6 +121,65 @@ TEST(Segments, ReachTheLimitWithFreeInitialStates) {
   EXPECT_EQ(fit.residual.size(), kSamples * kSegments);
 }
 
+/// The same where each force is known up to noise: of a segment 1 + G G', G by differences of the exact
+/// motion.
+MatrixXd calcLimitCovarianceWithNoisyForce(double force_noise) {
+  const auto at = [](const Eigen::Vector2d& state, double k, double d, int first, int pushed) {
+    VectorXd x(kSamples);
+    Eigen::Vector2d now = state;
+    for (int i = 0; i < kSamples; ++i) {
+      x[i] = now[0];
+      now = step(now, k, d, force(first + i) + (i == pushed ? 1.0 : 0.0));
+    }
+    return x;
+  };
+  MatrixXd information = MatrixXd::Zero(2, 2);
+  Eigen::Vector2d state(0.05, 0.2);
+  for (int segment = 0; segment < kSegments; ++segment) {
+    const int first = segment * kSamples;
+    const VectorXd usual = at(state, 100.0, 1.0, first, -1);
+    constexpr double h = 1e-5;
+    MatrixXd j(kSamples, 4), g(kSamples, kSamples);
+    j << at(state + Eigen::Vector2d(h, 0), 100.0, 1.0, first, -1) - usual,
+        at(state + Eigen::Vector2d(0, h), 100.0, 1.0, first, -1) - usual,
+        at(state, 100.0 + h, 1.0, first, -1) - usual, at(state, 100.0, 1.0 + h, first, -1) - usual;
+    for (int i = 0; i < kSamples; ++i) {
+      g.col(i) = force_noise * (at(state, 100.0, 1.0, first, i) - usual);
+      state = step(state, 100.0, 1.0, force(first + i));
+    }
+    const MatrixXd noise = kNoise * kNoise * MatrixXd::Identity(kSamples, kSamples) + g * g.transpose();
+    const MatrixXd all = (j.transpose() * noise.inverse() * j).inverse() * h * h;
+    information += all.bottomRightCorner(2, 2).inverse();
+  }
+  return information.inverse();
+}
+
+TEST(Segments, CountTheNoiseOfAnExcitation) {
+  constexpr double kForceNoise = 0.5;
+  const std::string key = "time: t", noisy = "time: t, noise: 0.5";
+  std::string text = kOscillator;
+  text.replace(text.find(key), key.size(), noisy);
+  const VectorXd limit = calcLimitCovarianceWithNoisyForce(kForceNoise).diagonal().cwiseSqrt();
+  const VectorXd silent = calcLimitCovariance().diagonal().cwiseSqrt();
+  const Eigen::Vector2d truth(100.0, 1.0);
+  for (const int seed : {5, 6}) {
+    Table table = record(seed);
+    std::mt19937 random(100 + seed);
+    std::normal_distribution<double> noise(0.0, kForceNoise);
+    for (double& value : table.columns[1].values) {
+      value += noise(random);
+    }
+    const InferredMeasurement inferred = infer(table, text);
+    const Estimate estimate = selectEstimate(inferred);
+    EXPECT_EQ(estimate.statuses, std::vector<std::string>{"ok"});
+    for (Index j = 0; j < 2; ++j) {
+      EXPECT_GT(limit[j], 1.5 * silent[j]) << j;
+      EXPECT_NEAR(estimate.stddev[j] / limit[j], 1.0, 0.15) << j;
+      EXPECT_LT(std::abs(estimate.mean[j] - truth[j]), 3.5 * limit[j]) << j;
+    }
+  }
+}
+
 TEST(Segments, DoWithoutSamplesThatAreMissing) {
   Table table = record(4);
   for (const Index i : {Index{25}, Index{26}, Index{40}, Index{130}}) {

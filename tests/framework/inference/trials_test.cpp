@@ -3,7 +3,7 @@
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/trial_reader.hpp"
+#include "framework/inference/joint/trial_reader.hpp"
 #include "framework/models/make_simulator.hpp"
 
 namespace twinmap {

@@ -5,8 +5,6 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
-#include "framework/data/measurement/files/read_table.hpp"
-#include "framework/data/measurement/files/table.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
@@ -53,24 +51,16 @@ RecordedFeatures readOfTrials(const DiagnoseArguments& arguments, const Experime
                     parseKnownValues(arguments.known));
 }
 
-/// One recording at its own times; several at those of the experiment, which they have in common.
-TimedRecording readArguments(const DiagnoseArguments& arguments, const MeasurementReader& reader) {
+RecordedFeatures readArguments(const DiagnoseArguments& arguments, const MeasurementReader& reader) {
   const ExperimentSpec& experiment = reader.getExperiment();
   if (!experiment.trials.empty() && !arguments.files.empty()) {
     throw ExperimentError(arguments.files.front() +
                           ": which trial does it record? Give --trial NAME=" + arguments.files.front());
   }
   if (!arguments.trials.empty()) {
-    return {std::nullopt, readOfTrials(arguments, experiment)};
+    return readOfTrials(arguments, experiment);
   }
-  const std::vector<KnownValue> known = parseKnownValues(arguments.known);
-  if (arguments.files.size() > 1 || arguments.starts.size() > 1) {
-    return {std::nullopt, readRecordings(reader, arguments.files, arguments.starts, known)};
-  }
-  const Table table = readTable(arguments.files.front(), reader.listColumns(), MissingCells::kKeep);
-  return readTimedRecording(
-      reader, table, arguments.starts.empty() ? std::nullopt : std::make_optional(arguments.starts.front()),
-      collectKnown(experiment.model.inputs, known));
+  return readRecordings(reader, arguments.files, arguments.starts, parseKnownValues(arguments.known));
 }
 
 }  // namespace
@@ -87,16 +77,15 @@ void diagnose(const DiagnoseArguments& arguments) {
     printBlindSpots(arguments, reader.getExperiment(), waiting);
     return;
   }
-  const TimedRecording timed = readArguments(arguments, reader);
-  const RecordedFeatures& recordings = timed.recording;
-  const ExperimentSpec& experiment = timed.getExperiment(reader.getExperiment());
+  const RecordedFeatures recordings = readArguments(arguments, reader);
+  const ExperimentSpec& experiment = reader.getExperiment();
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
-  options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
+  options.posterior = makePosteriorOptions(experiment, SimulatorPosteriorOptions{}.draws);
   const Diagnosis diagnosis = twinmap::diagnose(experiment, recordings, options);
   waiting.clear();
   if (!diagnosis.before.isExplained()) {
-    for (const std::string& against : listModelRemarks(reader.getExperiment().model)) {
+    for (const std::string& against : listModelRemarks(experiment.model)) {
       std::cerr << "twinmap: " << against << "\n";
     }
   }
@@ -104,9 +93,7 @@ void diagnose(const DiagnoseArguments& arguments) {
                 : arguments.csv ? makeDiagnosisCsv(diagnosis, name)
                                 : makeDiagnosisTable(diagnosis, name));
   if (!arguments.out.empty()) {
-    ExperimentSpec corrected = diagnosis.corrected;
-    corrected.features = reader.getExperiment().features;  // at times of any recording
-    writeTextFile(arguments.out, writeCorrected(corrected));
+    writeTextFile(arguments.out, writeCorrected(diagnosis.corrected));
   }
   if (!arguments.page.empty()) {
     writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, experiment, recordings,

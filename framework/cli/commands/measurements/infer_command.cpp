@@ -124,7 +124,7 @@ class InferCommand {
         WaitingLine waiting("infer " + nameWindow(table.source, start));
         InferredMeasurement inferred = session_->infer(table, start, known_);
         inferred.asked = describeAsked(table.source, start);
-        std::optional<TimedRecording> recording;
+        std::optional<RecordedFeatures> recording;
         if (tests_model_) {
           waiting.describe("look for what the model lacks, " + nameWindow(table.source, start));
           recording = testModel(source_.getReader(), table, start, known_, inferred);
@@ -191,7 +191,7 @@ class InferCommand {
   bool isTable() const { return printer_.getFormat() == InferFormat::kTable; }
   const ModelSpec& getModel() const { return source_.getExperiment().model; }
   /// recording: to be diagnosed as well; null: not.
-  void print(const InferredMeasurement& inferred, const TimedRecording* recording) {
+  void print(const InferredMeasurement& inferred, const RecordedFeatures* recording) {
     if (isTable() || !page_.empty()) {  // a stream has no end
       history_.add(inferred);
     }
@@ -208,10 +208,10 @@ class InferCommand {
     }
   }
 
-  Diagnosis diagnose(const TimedRecording& recording) const {
+  Diagnosis diagnose(const RecordedFeatures& recording) const {
     DiagnosisOptions options;
     options.posterior = makePosteriorOptions(source_.getExperiment(), SimulatorPosteriorOptions{}.draws);
-    return twinmap::diagnose(recording.getExperiment(source_.getExperiment()), recording.recording, options);
+    return twinmap::diagnose(source_.getExperiment(), recording, options);
   }
 
   void reportError(const std::string& source, double start, const std::string& error) {

@@ -8,10 +8,10 @@
 #include "framework/cli/waiting_line.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
+#include "framework/inference/joint/recording_list.hpp"
+#include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/measurement/direct_inference.hpp"
-#include "framework/inference/recording_list.hpp"
 #include "framework/inference/text/inference_text.hpp"
-#include "framework/inference/trial_reader.hpp"
 
 namespace twinmap::cli {
 namespace {

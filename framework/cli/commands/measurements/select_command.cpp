@@ -53,6 +53,20 @@ Source readSource(const std::string& file, const std::vector<std::string>& measu
   return {file, std::move(source), std::move(recordings), std::move(experiment)};
 }
 
+/// Of an experiment that reads its features between samples, another at the samples.
+void requireSameSamples(const Source& one, const Source& first) {
+  for (std::size_t k = 0; k < one.recordings.features.size(); ++k) {
+    const auto own = one.recordings.features[k].array().isFinite().count(),
+               others = first.recordings.features[k].array().isFinite().count();
+    if (own != others) {
+      throw ExperimentError(fmt::format(
+          "{} is compared by {} features of recording {}, but {} by {}: structures are compared by the same "
+          "data; give features the times of the recording's samples, which all models can read",
+          one.file, own, k + 1, first.file, others));
+    }
+  }
+}
+
 /// Evidence compares structures for the same data and noise alone.
 void requireComparable(const std::vector<Source>& all) {
   const Source& first = all.front();
@@ -63,6 +77,7 @@ void requireComparable(const std::vector<Source>& all) {
           "recordings; give them the same 'features'",
           one.file, one.countFeatures(), first.file, first.countFeatures()));
     }
+    requireSameSamples(one, first);
     if (listUnknownNoise(one.experiment.noise) != listUnknownNoise(first.experiment.noise)) {
       throw ExperimentError(
           fmt::format("{} and {} differ in the outputs whose noise is unknown: structures are compared by "

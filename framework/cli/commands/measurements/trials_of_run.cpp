@@ -10,10 +10,10 @@
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
+#include "framework/inference/joint/recording_list.hpp"
+#include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
-#include "framework/inference/recording_list.hpp"
-#include "framework/inference/trial_reader.hpp"
 
 namespace twinmap::cli {
 namespace {

@@ -124,8 +124,11 @@ std::string describeMissing(const std::string& column, const VectorXd& needed, c
   return text;
 }
 
-/// Why none of a column's samples, which are there at `times`, can be used.
-std::string describeUseless(const VectorXd& times, const VectorXd& needed) {
+/// Why none of a column's samples, which are there at `times`, can be used. clock: what is assumed of it
+/// (describeAssumedUnit).
+std::string describeUseless(const VectorXd& times, const VectorXd& needed, const std::string& clock) {
+  const std::string assumed = clock.empty() ? "" : " (" + clock + ")",
+                    unit = clock.empty() ? "" : ", or the unit of its times, as 't [ms]'" + assumed;
   if (times.size() == 0) {
     return "has no number in any row; check the sensor and its cable";
   }
@@ -137,24 +140,26 @@ std::string describeUseless(const VectorXd& times, const VectorXd& needed) {
   if (times.minCoeff() <= needed[needed.size() - 1] && times.maxCoeff() >= needed[0]) {
     return fmt::format(
         "has no sample at any needed time, {} to {}, but {} between them, {} apart (median), too far or too "
-        "unevenly to be interpolated; give features an interval of at least that, or infer this recording "
-        "alone, by samples at its own times",
+        "unevenly to be interpolated; give features an interval of at least that, or make all of them "
+        "samples, which inference from the experiment file takes at the times of the recording{}",
         describeTime(needed[0]), describeTime(needed[needed.size() - 1]),
         (times.array() >= needed[0] && times.array() <= needed[needed.size() - 1]).count(),
-        describeTime(calcMedianStep(times)));
+        describeTime(calcMedianStep(times)), unit);
   }
   return fmt::format(
-      "has no sample at any needed time, {} to {}, but some from {} to {}; give the time in the file that is "
+      "has no sample at any needed time, {} to {}, but some from {} to {}{}; give the time in the file that "
+      "is "
       "the model's 0 (--start), or the unit of its times, as 't [ms]'",
-      describeTime(needed[0]), describeTime(needed[needed.size() - 1]), first, last);
+      describeTime(needed[0]), describeTime(needed[needed.size() - 1]), first, last, assumed);
 }
 
 void requireUsable(const Table& table, const std::string& column, const VectorXd& times,
-                   const VectorXd& needed, const VectorXd& found) {
+                   const VectorXd& needed, const VectorXd& found, const std::string& clock) {
   constexpr Index kMin = 4;
   const Samples there = takeSamples(needed, found);
   if (there.values.size() == 0) {
-    throw MeasurementError(table.source + ": column '" + column + "' " + describeUseless(times, needed));
+    throw MeasurementError(table.source + ": column '" + column + "' " +
+                           describeUseless(times, needed, clock));
   }
   if (there.values.size() >= kMin && (there.values.array() == there.values[0]).all()) {
     throw MeasurementError(table.source + ": column '" + column + "' is " + toText(there.values[0]) +
@@ -174,11 +179,8 @@ std::vector<Index> listNeeded(const VectorXd& times, const std::string& output,
                               const std::vector<FeatureSpec>& features) {
   std::vector<Index> all(static_cast<std::size_t>(times.size())), needed;
   std::iota(all.begin(), all.end(), Index{0});
-  if (!features.empty()) {
-    const std::vector<Name> outputs = collectOutputs(features);
-    if (std::none_of(outputs.begin(), outputs.end(), [&](const Name& name) { return name.text == output; })) {
-      return {};
-    }
+  if (!features.empty() && !usesOutput(features, output)) {
+    return {};
   }
   if (features.empty() || !areSamples(features)) {
     return all;
@@ -193,9 +195,10 @@ std::vector<Index> listNeeded(const VectorXd& times, const std::string& output,
 }
 
 /// Finds the samples of an output: in its rows of the response, missing only at these of the layout's times.
+/// clock: what is assumed of its times.
 void addOutput(const Table& table, const std::string& column, const SampleFinder& finder,
                const std::optional<Bounds>& range, const ResponseLayout& layout, Index output,
-               const std::vector<Index>& at, AvailableResponse& available) {
+               const std::vector<Index>& at, const std::string& clock, AvailableResponse& available) {
   const VectorXd needed = layout.times(at);
   VectorXd found(layout.times.size()), known(found.size());
   std::vector<ClippedSample> beyond;
@@ -208,7 +211,7 @@ void addOutput(const Table& table, const std::string& column, const SampleFinder
       beyond.push_back({row, sample.side > 0.0 ? range->upper : range->lower, sample.side});
     }
   }
-  requireUsable(table, column, finder.getTimes(), needed, found(at));
+  requireUsable(table, column, finder.getTimes(), needed, found(at), clock);
   available.clipped.insert(available.clipped.end(), beyond.begin(), beyond.end());
   known = VectorXd(known(at));
   if (!beyond.empty()) {
@@ -287,7 +290,7 @@ AvailableResponse readAvailable(const Table& table, const MeasurementSpec& spec,
     const Samples samples = readSamples(clocked, spec, layout, o);
     const std::optional<Bounds> range = findRange(spec, name);
     addOutput(clocked.rows, column, SampleFinder(samples, clocked.start, spacing, range), range, layout,
-              output, needed, available);
+              output, needed, describeAssumedUnit(clocked.rows, makeTimeBase(spec, name, start)), available);
   }
   std::vector<std::string> remarks = recording.takeRemarks();
   available.remarks.insert(available.remarks.begin(), remarks.begin(), remarks.end());

@@ -141,6 +141,21 @@ TEST(AvailableResponse, SaysThatItsSamplesLieBetween) {
   }
 }
 
+TEST(AvailableResponse, SaysWhatIsAssumedOfTimesWithoutAUnit) {
+  for (const bool is_stated : {false, true}) {
+    Table table = record(0.1);
+    table.columns[0].values *= 1e3;
+    table.columns[0].unit = is_stated ? std::optional<std::string>("s") : std::nullopt;
+    try {
+      readAvailable(table, {}, makeTwoOutputs(), 0.0);
+      ADD_FAILURE() << "accepted";
+    } catch (const MeasurementError& error) {
+      const std::string said = error.what();
+      EXPECT_EQ(said.find("column 't' states no unit: s is assumed") == std::string::npos, is_stated) << said;
+    }
+  }
+}
+
 TEST(AvailableResponse, DoesNotInterpolateOverLostRows) {
   Table table = record(0.04);
   const Index rows = table.columns[0].values.size();

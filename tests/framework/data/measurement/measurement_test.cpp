@@ -55,6 +55,50 @@ Table without(Table table, Index row) {
   return table;
 }
 
+/// Of a column that is to be in this unit.
+std::string describeUnread(const std::string& header, const std::string& unit,
+                           const ColumnSpec& wanted = {}) {
+  const ColumnSpec column = parseColumn(header);
+  const Table table{"a.csv", {{column.name, column.unit, VectorXd::Zero(2)}}, {}};
+  return describeUnreadUnit(table, wanted.name.empty() ? ColumnSpec{column.name, {}, {}} : wanted, unit);
+}
+
+TEST(UnreadUnits, AreNamedWithWhatIsAssumed) {
+  const std::string said = describeUnread("Zeit(ms)", "s");
+  EXPECT_NE(said.find("'ms' in the name of column 'Zeit(ms)' is not read as its unit: s is assumed"),
+            std::string::npos)
+      << said;
+  EXPECT_NE(said.find("'Zeit(ms) [ms]'"), std::string::npos) << said;
+  EXPECT_NE(describeUnread("t_ms", "s"), "");
+  EXPECT_NE(describeUnread("Weg, mm", "m").find("m is assumed"), std::string::npos);
+  EXPECT_NE(describeUnread("Kraft/kN", "N"), "");
+  EXPECT_NE(describeUnread("Zeit (foo)", "s").find("'foo'"), std::string::npos);
+}
+
+TEST(UnreadUnits, AreNoneWhereTheUnitIsReadOrTheSameOrANameAlone) {
+  for (const char* header : {"Zeit [ms]", "Zeit (ms)", "t_s", "time(s)", "t", "t_rel", "t, N"}) {
+    EXPECT_EQ(describeUnread(header, "s"), "") << header;
+  }
+  for (const char* header : {"x(t)", "x (left)", "x_in", "x_mm", "x, m", "x/2"}) {
+    EXPECT_EQ(describeUnread(header, "m"), "") << header;
+  }
+  EXPECT_EQ(describeUnread("t_ms", "s", parseColumn("t_ms [ms]")), "");
+}
+
+TEST(Measurement, NeedsNoColumnOfAnOutputThatNoFeatureUses) {
+  const VectorXd times = makeTimes(60, 0.01);
+  Table table = makeCubicTable(times);
+  const ResponseLayout layout = makeLayout(makeTimes(5, 0.1));
+  const VectorXd whole = resampleTable(table, layout);
+  table.columns.erase(table.columns.begin() + 1);
+  EXPECT_THROW(readMeasurement(table, {}, layout, 0.0), MeasurementError);
+  SamplesFeatureSpec samples;
+  samples.outputs = {{"theta", {}}};
+  const VectorXd alone = resample(readMeasurement(table, {}, layout, 0.0, {samples}), layout);
+  EXPECT_EQ(alone.tail(5), whole.tail(5));
+  EXPECT_TRUE(alone.head(5).array().isNaN().all());
+}
+
 TEST(Measurement, TimesSince1970KeepTheirMilliseconds) {
   EXPECT_EQ(describeTime(1.545), "1.545 s");
   EXPECT_EQ(describeTime(1700000000.379473), "1700000000.379 s");

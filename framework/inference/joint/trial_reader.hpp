@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/inference/recording_list.hpp"
+#include "framework/inference/joint/recording_list.hpp"
 
 namespace twinmap {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/inference/joint_inference.hpp"
+#include "framework/inference/joint/joint_inference.hpp"
 
 namespace twinmap {
 

@@ -1,4 +1,4 @@
-#include "framework/inference/recording_list.hpp"
+#include "framework/inference/joint/recording_list.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "framework/inference/trial_reader.hpp"
+#include "framework/inference/joint/trial_reader.hpp"
 
 #include <algorithm>
 
@@ -47,8 +47,11 @@ std::optional<Eigen::VectorXd> TrialReader::read(const std::vector<RecordedTable
       return {};
     }
     const Table& table = std::find_if(recordings.begin(), recordings.end(), is_of_trial)->table;
+    if (trial.reader.followTimes(table, start)) {
+      return {};
+    }
     const AvailableFeatures found = trial.reader.readAvailableFeatures(table, start);
-    if (!found.isComplete() || trial.reader.followTimes(table, start)) {
+    if (!found.isComplete()) {
       return {};
     }
     features.insert(features.end(), found.features.begin(), found.features.end());

@@ -1,4 +1,4 @@
-#include "framework/inference/joint_inference.hpp"
+#include "framework/inference/joint/joint_inference.hpp"
 
 #include <fmt/core.h>
 
@@ -15,6 +15,9 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
+#include "framework/inference/measurement/supposed_input.hpp"
+#include "framework/inference/measurement/unknown_excitation.hpp"
+#include "framework/inference/measurement/unstated_noise.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -259,48 +262,41 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
   return *found;
 }
 
-const JointInferrer::Member& JointInferrer::follow(const Recording& recording) const {
-  const Member& member = find(recording.trial);
-  if (const auto known = followed_.find(recording.label); known != followed_.end()) {
-    return known->second;
+JointInferrer::Measured JointInferrer::read(const Recording& recording) const {
+  Measured measured{&find(recording.trial)};
+  if (std::optional<ExperimentSpec> followed =
+          measured.getReader().follow(*recording.table, recording.start)) {
+    measured.own_reader = std::make_unique<const MeasurementReader>(std::move(*followed));
+    const ExperimentSpec& experiment = measured.own_reader->getExperiment();
+    const ResponseLayout& layout = measured.own_reader->getLayout();
+    measured.own_simulator = std::make_unique<const SimulatorRefiner>(
+        experiment, layout,
+        shareAmongThreads(makeTrustedSimulator(experiment.model, layout.times, layout.modes)));
   }
-  std::optional<ExperimentSpec> experiment = member.reader->follow(*recording.table, recording.start);
-  if (!experiment) {
-    return member;
+  const MeasurementReader& reader = measured.getReader();
+  measured.found = reader.readAvailableFeatures(*recording.table, recording.start);
+  if (auto supposed = makeOwnSimulator(reader, measured.getSimulator(), measured.found,
+                                       measured.member->known, options_)) {
+    measured.own_simulator = std::move(supposed);
   }
-  auto reader = std::make_unique<const MeasurementReader>(std::move(*experiment));
-  const ResponseLayout& layout = reader->getLayout();
-  auto simulator = std::make_unique<const SimulatorRefiner>(
-      reader->getExperiment(), layout,
-      shareAmongThreads(makeTrustedSimulator(reader->getExperiment().model, layout.times, layout.modes)));
-  return followed_
-      .emplace(recording.label, Member{member.name, std::move(reader), std::move(simulator), member.known})
-      .first->second;
-}
-
-MeasuredTrial JointInferrer::makeTrial(const Recording& recording) const {
-  const Member& member = follow(recording);
-  const AvailableFeatures found = member.reader->readAvailableFeatures(*recording.table, recording.start);
-  requireNoneStated(found.stated, recording.table->source);
-  MeasuredTrial trial = member.simulator->makeTrial(found.features, member.known);
-  trial.noise = member.simulator->describeNoise(found.clipped);
-  return trial;
+  return measured;
 }
 
 std::vector<RecordingInference> JointInferrer::inferAlone(const std::vector<Recording>& recordings,
+                                                          const std::vector<Measured>& measured,
                                                           const std::vector<MeasuredTrial>& trials) const {
   std::vector<RecordingInference> alone(recordings.size());
   std::vector<PosteriorProblem> problems;
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    const Member& member = follow(recordings[k]);
-    const std::vector<ParameterSpec>& unknown = member.simulator->getUnknown();
-    problems.push_back({unknown,
-                        member.reader->getExperiment().model.priors,
-                        {trials[k]},
-                        static_cast<Index>(unknown.size())});
+    const ModelSpec& model = measured[k].getReader().getExperiment().model;
+    const std::vector<ParameterSpec>& unknown = measured[k].getSimulator().getUnknown();
+    problems.push_back({unknown, model.priors, {trials[k]}, static_cast<Index>(unknown.size())});
     alone[k].label = recordings[k].label;
-    alone[k].inferred.source = recordings[k].table->source;
-    alone[k].inferred.start = member.reader->getStart(*recordings[k].table, recordings[k].start);
+    InferredMeasurement& inferred = alone[k].inferred;
+    inferred.source = recordings[k].table->source;
+    inferred.start = measured[k].getReader().getStart(*recordings[k].table, recordings[k].start);
+    inferred.left_out = measured[k].found.remarks;
+    inferred.remarks = describeBridged(model);
   }
   const int threads = countThreads();
   const bool side_by_side =
@@ -312,8 +308,7 @@ std::vector<RecordingInference> JointInferrer::inferAlone(const std::vector<Reco
     stage.show(++done, static_cast<int>(recordings.size()));
   });
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    alone[k].inferred.posterior =
-        follow(recordings[k]).simulator->makeEstimate(trials[k], alone[k].posterior);
+    alone[k].inferred.posterior = measured[k].getSimulator().makeEstimate(trials[k], alone[k].posterior);
   }
   return alone;
 }
@@ -340,17 +335,33 @@ PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& record
   return problem;
 }
 
+void JointInferrer::nameUnstatedNoise(const std::vector<Measured>& measured, JointInference& inferred) {
+  for (std::size_t k = 0; k < measured.size(); ++k) {
+    InferredMeasurement& alone = inferred.alone[k].inferred;
+    const bool misfits = !alone.posterior->fit->isPlausible();
+    if (misfits || inferred.disagrees()) {
+      const std::vector<std::string> noisy =
+          describeUnstatedNoise(measured[k].getReader(), measured[k].getSimulator(), measured[k].found,
+                                measured[k].member->known, *alone.posterior);
+      alone.remarks.insert(alone.remarks.end(), noisy.begin(), noisy.end());
+    }
+  }
+}
+
 JointInference JointInferrer::infer(const std::vector<Recording>& recordings) const {
-  followed_.clear();
   JointInference inferred;
   std::vector<std::unique_ptr<Simulator>> simulators;
+  std::vector<Measured> measured;
   std::vector<MeasuredTrial> trials;
   for (const Recording& recording : recordings) {
-    trials.push_back(makeTrial(recording));
+    measured.push_back(read(recording));
+    const Measured& one = measured.back();
+    trials.push_back(one.getSimulator().makeTrial(one.found.features, one.member->known));
+    trials.back().noise = one.getSimulator().describeNoise(one.found.clipped);
     simulators.push_back(trials.back().simulator->clone());  // for a thread of its own
     trials.back().simulator = simulators.back().get();
   }
-  inferred.alone = inferAlone(recordings, trials);
+  inferred.alone = inferAlone(recordings, measured, trials);
   for (const RecordingInference& one : inferred.alone) {
     inferred.simulations += one.posterior.simulations;
     if (!(one.posterior.degrees > 0.0)) {
@@ -377,6 +388,7 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
       testAgreement(inferred.joint.misfit, separate, linearizeParts(problem, inferred.joint.best), problem,
                     inferred.joint.best, options_.seed);
   inferred.contradictions = findContradictions(inferred.alone, shared);
+  nameUnstatedNoise(measured, inferred);
   if (inferred.disagrees()) {
     inferred.scatter = combineRecordings(inferred.alone, getParameters());
   }

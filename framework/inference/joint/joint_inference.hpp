@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -92,18 +91,33 @@ class JointInferrer {
     Eigen::VectorXd known;
   };
 
+  /// A recording as it was read, and what simulates it: its trial's where nothing is its own.
+  struct Measured {
+    const Member* member;
+    std::unique_ptr<const MeasurementReader> own_reader{};
+    std::unique_ptr<const SimulatorRefiner> own_simulator{};
+    AvailableFeatures found{};
+
+    const MeasurementReader& getReader() const { return own_reader ? *own_reader : *member->reader; }
+    const SimulatorRefiner& getSimulator() const {
+      return own_simulator ? *own_simulator : *member->simulator;
+    }
+  };
+
   const Member& find(const std::string& trial) const;
-  /// That of its trial, with the recording's times and excitation (MeasurementReader::follow).
-  const Member& follow(const Recording& recording) const;
-  MeasuredTrial makeTrial(const Recording& recording) const;
-  /// trials: of the recordings (makeTrial), each with a simulator of its own.
+  /// With the recording's times and excitation (MeasurementReader::follow), and what is not known of that
+  /// (makeOwnSimulator).
+  Measured read(const Recording& recording) const;
+  /// trials: of the recordings, each with a simulator of its own.
   std::vector<RecordingInference> inferAlone(const std::vector<Recording>& recordings,
+                                             const std::vector<Measured>& measured,
                                              const std::vector<MeasuredTrial>& trials) const;
+  /// Of recordings that the model does not explain, or that disagree: of others it would take long.
+  static void nameUnstatedNoise(const std::vector<Measured>& measured, JointInference& inferred);
   PosteriorProblem makeProblem(const std::vector<Recording>& recordings,
                                std::vector<MeasuredTrial> trials) const;
 
   std::vector<Member> members_;
-  mutable std::map<std::string, Member> followed_;  // by the labels of the recordings that are inferred
   SimulatorPosteriorOptions options_, joint_options_;
 };
 
