@@ -70,20 +70,20 @@ RecordedFeatures leaveOutliers(const ExperimentSpec& experiment, const RecordedF
 
 /// Searched from `start`, with the noise of the residual where its size is not known. It has no point where
 /// nothing can be simulated.
-CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const VectorXd& start) {
-  const RecordingsProblem problem(experiment, recording);
+  const RecordingsProblem problem(experiment, recordings);
   const RecordingFit fit = problem.fit(start);
-  const auto residuals = static_cast<double>(recording.features.front().array().isFinite().count());
+  const auto residuals = static_cast<double>(problem.listInfos().size());
   CurrentFit current{experiment, fit.point, fit.chi_square,
                      std::max(1.0, residuals - static_cast<double>(fit.point.size()))};
   if (hasUnknownNoise(experiment.noise) && fit.point.size() > 0) {
     const VectorXd residual = problem.linearize(fit.point).residual;
     current.experiment.noise =
         sizeNoise(experiment.noise, {experiment.noise, residual, current.degrees, problem.listInfos()},
-                  recording.listOutputs(experiment));
+                  recordings.listOutputs(experiment));
     current.chi_square =
-        RecordingsProblem(current.experiment, recording).linearize(fit.point).residual.squaredNorm();
+        RecordingsProblem(current.experiment, recordings).linearize(fit.point).residual.squaredNorm();
   }
   return current;
 }
@@ -173,47 +173,61 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
   return missing;
 }
 
-/// Of a measurement that noise explains, of whatever kind that was found.
-ModelTest testExplained(ExperimentSpec experiment, const RecordedFeatures& recorded,
-                        const InferredMeasurement& inferred, const KnownFit& known) {
-  const bool is_sized = hasUnknownNoise(experiment.noise);
-  takeFoundNoise(inferred, experiment.noise);
-  const SimulatorFit* fit =
-      inferred.posterior && inferred.posterior->fit ? &*inferred.posterior->fit : nullptr;
-  const bool has_outliers = fit != nullptr && !fit->outliers.empty();
-  const RecordedFeatures recording =
-      has_outliers ? leaveOutliers(experiment, recorded, known.point) : recorded;
-  CurrentFit current{experiment, known.point, known.chi_square, known.degrees};
+/// Of recordings that noise explains, as `experiment` has it. unstated: of that which was found.
+ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                        const KnownFit& known, bool unstated) {
   const ScoredCandidates scored =
-      scoreCandidates(experiment, recording, known.point, CandidateKinds::kWithoutStates);
+      scoreCandidates(experiment, recordings, known.point, CandidateKinds::kWithoutStates);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   ModelTest test;
-  if (!is_sized) {
+  if (!unstated) {
     test.unnoticed = findUnnoticed(scored, p);
   }
+  CurrentFit current{experiment, known.point, known.chi_square, known.degrees};
   std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
   if (ranked.empty() || !(ranked.front().finding.p_value < kLevel)) {
     return test;
   }
-  current = fitFrom(experiment, recording, known.point);
+  current = fitFrom(experiment, recordings, known.point);
   const RankedTerm* best =
-      current.point.size() > 0 ? fitBest(current, recording, scored, p, ranked) : nullptr;
+      current.point.size() > 0 ? fitBest(current, recordings, scored, p, ranked) : nullptr;
   if (best == nullptr || !(best->finding.log_evidence > kTiedEvidence) ||
-      !(best->finding.shifts.cwiseAbs().maxCoeff() > 1.0) ||
-      (fit != nullptr && fit->hasOffset() && best->finding.candidate.term.rfind("offset.", 0) == 0)) {
+      !(best->finding.shifts.cwiseAbs().maxCoeff() > 1.0)) {
     return test;
   }
   MissingTerm missing = describe(*best, ranked);
-  missing.explains = explains(current, recording, best->fitted);
+  missing.explains = explains(current, recordings, best->fitted);
   if (missing.explains || best->finding.holds_cautiously) {
     test.missing = std::move(missing);
   }
   return test;
 }
 
-/// Of a system of bodies that is simulated in time.
-bool isKnown(const ModelSpec& model) {
-  return isGiven(model.system) && model.simulation.duration > 0.0;
+/// With what was found of the noise.
+ModelTest testExplained(ExperimentSpec experiment, const RecordedFeatures& recording,
+                        const InferredMeasurement& inferred, const KnownFit& known) {
+  const bool unstated = hasUnknownNoise(experiment.noise);
+  takeFoundNoise(inferred, experiment.noise);
+  const SimulatorFit* fit =
+      inferred.posterior && inferred.posterior->fit ? &*inferred.posterior->fit : nullptr;
+  const bool has_outliers = fit != nullptr && !fit->outliers.empty();
+  ModelTest test =
+      testExplained(experiment, has_outliers ? leaveOutliers(experiment, recording, known.point) : recording,
+                    known, unstated);
+  if (fit != nullptr && fit->hasOffset() && test.missing && test.missing->term.rfind("offset.", 0) == 0) {
+    test.missing.reset();  // the same in other words
+  }
+  return test;
+}
+
+/// Whether the model, and that of each trial, is a system of bodies that is simulated in time.
+bool isKnown(const ExperimentSpec& experiment) {
+  const auto is_known = [](const ModelSpec& model) {
+    return isGiven(model.system) && model.simulation.duration > 0.0;
+  };
+  return is_known(experiment.model) &&
+         std::all_of(experiment.trials.begin(), experiment.trials.end(),
+                     [&](const TrialExperiment& trial) { return is_known(trial.experiment.model); });
 }
 
 bool isMisfit(const InferredMeasurement& inferred) {
@@ -228,7 +242,7 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   const auto u = static_cast<Index>(unknown.size());
   const KnownFit known = findBest(inferred, u);
   const bool misfits = isMisfit(inferred);
-  if (!isKnown(experiment.model) || (known.point.size() == 0 && !misfits)) {
+  if (!isKnown(experiment) || (known.point.size() == 0 && !misfits)) {
     return;
   }
   try {
@@ -251,7 +265,7 @@ std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const
   const ExperimentSpec& experiment = reader.getExperiment();
   const auto u = static_cast<Index>(collectUnknown(experiment.model).size());
   const bool misfits = isMisfit(inferred);
-  if (reader.findReduction() != nullptr || !inferred.fault.empty() || !isKnown(experiment.model) ||
+  if (reader.findReduction() != nullptr || !inferred.fault.empty() || !isKnown(experiment) ||
       (!misfits && findBest(inferred, u).point.size() == 0)) {
     return std::nullopt;
   }
@@ -259,6 +273,25 @@ std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const
   testModel(experiment, recording, inferred);
   return misfits || inferred.findMissing() != nullptr ? std::make_optional(std::move(recording))
                                                       : std::nullopt;
+}
+
+void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+               JointInference& inferred) {
+  const SimulatorPosterior& joint = inferred.joint;
+  if (!isKnown(experiment) || !(joint.degrees > 0.0)) {
+    return;
+  }
+  const std::vector<std::string> statuses =
+      listStatuses(inferred, static_cast<Index>(experiment.model.parameters.size()));
+  const KnownFit known{joint.best, joint.chi_square, joint.degrees};
+  try {
+    inferred.model_test =
+        isMismatch(statuses) || inferred.disagrees()
+            ? ModelTest{explainMisfit(experiment, recordings, known.point)}
+            : testExplained(experiment, recordings, known, hasUnknownNoise(experiment.noise));
+  } catch (const std::runtime_error&) {
+    // as above
+  }
 }
 
 }  // namespace twinmap

@@ -4,6 +4,7 @@
 
 #include "framework/diagnosis/problem/recorded_problem.hpp"
 #include "framework/inference/inferrer.hpp"
+#include "framework/inference/joint/joint_inference.hpp"
 
 namespace twinmap {
 
@@ -23,5 +24,9 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
 std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const Table& table,
                                           std::optional<double> start, const Eigen::VectorXd& known,
                                           InferredMeasurement& inferred);
+
+/// The same of recordings together, of an experiment or of the trials that it combines.
+void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+               JointInference& inferred);
 
 }  // namespace twinmap

@@ -265,6 +265,25 @@ RecordedFeatures readTrials(const ExperimentSpec& combined, const std::vector<Tr
   return recordings;
 }
 
+RecordedFeatures readRecordings(const ExperimentSpec& combined, const std::vector<Recording>& recordings,
+                                const std::vector<KnownValue>& known) {
+  if (combined.trials.empty()) {
+    const MeasurementReader reader(combined);
+    RecordedFeatures all{reader.getLayout(), {}, collectKnown(combined.model.inputs, known)};
+    for (const Recording& one : recordings) {
+      append(readRecording(reader, *one.table, one.start, all.known), all);
+    }
+    return all;
+  }
+  RecordedFeatures all = setUpTrials(combined, known);
+  for (const Recording& one : recordings) {
+    const std::size_t trial = findTrial(combined, one.trial);
+    const MeasurementReader reader(combined.trials[trial].experiment);
+    appendOfTrial(readRecording(reader, *one.table, one.start, all.setups[trial].known), trial, all);
+  }
+  return all;
+}
+
 RecordedFeatures makeEmptyRecordings(const ExperimentSpec& experiment, const std::vector<KnownValue>& known) {
   const auto makeEmpty = [](const ExperimentSpec& one, const ResponseLayout& layout) -> VectorXd {
     return VectorXd::Zero(makeExtractor(one, layout).getFeatureCount());

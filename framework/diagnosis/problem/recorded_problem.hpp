@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "framework/inference/joint/joint_inference.hpp"
 #include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/refiner.hpp"
@@ -72,6 +73,10 @@ RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vect
 /// The same of trials: each file is of one of them. Throws ExperimentError for an unknown trial.
 RecordedFeatures readTrials(const ExperimentSpec& combined, const std::vector<TrialFile>& files,
                             const std::vector<double>& starts, const std::vector<KnownValue>& known);
+
+/// What was inferred jointly, as inference reads it. combined: its trials, if it has any. Throws as above.
+RecordedFeatures readRecordings(const ExperimentSpec& combined, const std::vector<Recording>& recordings,
+                                const std::vector<KnownValue>& known);
 
 /// Nothing measured, of each trial or of the only one.
 RecordedFeatures makeEmptyRecordings(const ExperimentSpec& experiment, const std::vector<KnownValue>& known);

@@ -200,6 +200,8 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
         return one.inferred.posterior->fit->test.calcPValue() < level;
       })) {
     statuses.emplace_back("model_mismatch");
+  } else if (inferred.findMissing() != nullptr && !inferred.disagrees()) {
+    statuses.emplace_back("missing_term");
   }
   if (!inferred.beyond.empty()) {
     statuses.emplace_back("at_bounds");

@@ -49,15 +49,20 @@ struct JointInference {
   std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first
   std::vector<ScatterEstimate> scatter;       ///< of each parameter; empty unless they disagree
   int simulations = 0;
-  Asked asked{};  ///< what the user asked for
+  Asked asked{};                          ///< what the user asked for
+  std::optional<ModelTest> model_test{};  ///< of all recordings together, where the model is known
+
+  const MissingTerm* findMissing() const {
+    return model_test && model_test->missing ? &*model_test->missing : nullptr;
+  }
 
   bool disagrees() const { return agreement && agreement->p_value < kAgreementLevel; }
 };
 
 /// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
-/// "model_mismatch" (of a recording alone), "at_bounds", "trials_disagree" (below kAgreementLevel),
-/// "unreliable", "multimodal", "uninformative"; {"ok"} where nothing is. Of the first `parameters`, the
-/// machine's.
+/// "model_mismatch" (of a recording alone), "missing_term", "at_bounds", "trials_disagree" (below
+/// kAgreementLevel), "unreliable", "multimodal", "uninformative"; {"ok"} where nothing is. Of the first
+/// `parameters`, the machine's.
 std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
 
 /// The mean of values with standard deviations that scatter more than these say: variance between them by

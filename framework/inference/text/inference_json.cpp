@@ -237,34 +237,6 @@ void addNuisance(const InferredMeasurement& inferred, Json& json) {
   }
 }
 
-/// What terms the model lacks, or may lack unnoticed; "model_tested" is false where none was asked for.
-void addModelTest(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
-                  Json& json) {
-  json["model_tested"] = inferred.model_test.has_value();
-  if (const MissingTerm* missing = inferred.findMissing()) {
-    json["missing"] = {{"term", missing->term},
-                       {"meaning", missing->meaning},
-                       {"size", missing->size},
-                       {"sd", missing->stddev},
-                       {"unit", missing->unit},
-                       {"share", missing->share},
-                       {"log_evidence", missing->log_evidence},
-                       {"rivals", missing->rivals}};
-    for (Eigen::Index i = 0; i < missing->shifts.size(); ++i) {
-      json["missing"]["shifts"][parameters[static_cast<std::size_t>(i)].name.text] = missing->shifts[i];
-    }
-  }
-  if (inferred.model_test && inferred.model_test->unnoticed) {
-    const UnnoticedTerm& term = *inferred.model_test->unnoticed;
-    json["unnoticed"] = {{"term", term.term},
-                         {"meaning", term.meaning},
-                         {"size", term.size},
-                         {"unit", term.unit},
-                         {"parameter", parameters[term.parameter].name.text},
-                         {"shift", term.shift}};
-  }
-}
-
 /// The estimates that there are beside the one that was taken.
 void addOrigins(const InferredMeasurement& inferred, const Estimate& estimate,
                 const std::vector<ParameterSpec>& parameters, Json& json) {
@@ -281,6 +253,34 @@ void addOrigins(const InferredMeasurement& inferred, const Estimate& estimate,
 }
 
 }  // namespace
+
+void addModelTest(const std::optional<ModelTest>& test, const std::vector<ParameterSpec>& parameters,
+                  Json& json) {
+  json["model_tested"] = test.has_value();
+  if (test && test->missing) {
+    const MissingTerm& missing = *test->missing;
+    json["missing"] = {{"term", missing.term},
+                       {"meaning", missing.meaning},
+                       {"size", missing.size},
+                       {"sd", missing.stddev},
+                       {"unit", missing.unit},
+                       {"share", missing.share},
+                       {"log_evidence", missing.log_evidence},
+                       {"rivals", missing.rivals}};
+    for (Eigen::Index i = 0; i < missing.shifts.size(); ++i) {
+      json["missing"]["shifts"][parameters[static_cast<std::size_t>(i)].name.text] = missing.shifts[i];
+    }
+  }
+  if (test && test->unnoticed) {
+    const UnnoticedTerm& term = *test->unnoticed;
+    json["unnoticed"] = {{"term", term.term},
+                         {"meaning", term.meaning},
+                         {"size", term.size},
+                         {"unit", term.unit},
+                         {"parameter", parameters[term.parameter].name.text},
+                         {"shift", term.shift}};
+  }
+}
 
 std::string makeInferenceJson(const InferredMeasurement& inferred,
                               const std::vector<ParameterSpec>& parameters,
@@ -317,7 +317,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
   if (estimate.mixture.isGiven()) {
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
-  addModelTest(inferred, parameters, json);
+  addModelTest(inferred.model_test, parameters, json);
   const bool was_simulated = inferred.posterior && inferred.posterior->fit;
   if (inferred.trust || was_simulated) {
     json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/base/json/json_fwd.hpp"
 #include "framework/base/log/notice.hpp"
 #include "framework/inference/inferrer.hpp"
 
@@ -13,6 +14,17 @@ bool hasStatus(const std::vector<std::string>& statuses, Notice notice);
 /// Whether the remedy of a status goes against that of another beside it, or is the same in other words.
 /// Bounds are not to be widened where they are to exclude, nor twice.
 bool isAdvisedElse(const std::string& status, const std::vector<std::string>& statuses);
+
+/// A term that a model most likely lacks, and what it does to the parameters; ends in what to do.
+std::string explainMissingTerm(const MissingTerm& missing, const std::vector<ParameterSpec>& parameters);
+
+/// What could be missing all the same, below an "ok"; "" where nothing would matter.
+std::string describeUnnoticed(const std::optional<ModelTest>& test,
+                              const std::vector<ParameterSpec>& parameters);
+
+/// Adds the same to JSON: what terms the model lacks, or may lack unnoticed, and whether any was asked for.
+void addModelTest(const std::optional<ModelTest>& test, const std::vector<ParameterSpec>& parameters,
+                  Json& json);
 
 /// The status with its numbers, then for each thing that is wrong a line that says what, and one that says
 /// what to do.

@@ -176,6 +176,11 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
   if (!inferred.agreement) {
     return fillCommands(text + explainNotice(Notice::kNotSimulated, inferred.joint.message), inferred.asked);
   }
+  if (listed == std::vector<std::string>{getNotice(Notice::kOk).name}) {
+    text += describeUnnoticed(inferred.model_test, parameters);
+  } else if (hasStatus(listed, Notice::kMissingTerm)) {
+    text += fillCommands(explainMissingTerm(*inferred.findMissing(), parameters), inferred.asked);
+  }
   // each recording alone is tested at a level of its own: what all together take for chance is not said
   const bool misfits = isMismatch(listed);
   if (!inferred.beyond.empty()) {
@@ -247,6 +252,7 @@ std::string makeJointJson(const JointInference& inferred, const std::vector<Para
                                                      {"distance", one.distance}});
     }
   }
+  addModelTest(inferred.model_test, parameters, json);
   json["trials"] = makeTrialsJson(inferred, parameters);
   json["simulations"] = inferred.simulations;
   return formatJson(json);

@@ -209,42 +209,6 @@ std::string describeMissing(const InferredMeasurement& inferred) {
                             : "";
 }
 
-/// Two digits; "110", not "1.1e+02".
-std::string toShiftText(double shift) {
-  constexpr double kTens = 10.0;
-  return fmt::format(shift < kTens ? "{:.2g}" : "{:.0f}", shift);
-}
-
-/// "c would fall by 99 of its sds": the parameter that a term moves most.
-std::string describeShift(const Eigen::VectorXd& shifts, const std::vector<ParameterSpec>& parameters) {
-  Index most = 0;
-  const double size = shifts.cwiseAbs().maxCoeff(&most);
-  return fmt::format("{} would {} by {} of its sds", parameters[static_cast<std::size_t>(most)].name.text,
-                     shifts[most] < 0.0 ? "fall" : "rise", toShiftText(size));
-}
-
-std::string explainMissingTerm(const MissingTerm& missing, const std::vector<ParameterSpec>& parameters) {
-  const std::string rivals =
-      missing.rivals.empty() ? "" : fmt::format("; {} would do as well", listNames(missing.rivals));
-  return explainNotice(Notice::kMissingTerm, missing.term, missing.meaning,
-                       describeShift(missing.shifts, parameters) + rivals);
-}
-
-/// What could be missing all the same, below an "ok".
-std::string describeUnnoticed(const InferredMeasurement& inferred,
-                              const std::vector<ParameterSpec>& parameters) {
-  constexpr double kNoticed = 1.0;
-  if (!inferred.model_test || !inferred.model_test->unnoticed ||
-      !(inferred.model_test->unnoticed->shift > kNoticed)) {
-    return "";
-  }
-  const UnnoticedTerm& term = *inferred.model_test->unnoticed;
-  constexpr int kDigits = 2;
-  return fmt::format("  could go unnoticed: {} below {}{} ({} by up to {} of its sds)\n", term.term,
-                     toShortText(term.size, kDigits), term.unit.empty() ? "" : " " + term.unit,
-                     parameters[term.parameter].name.text, toShiftText(term.shift));
-}
-
 bool isMismatch(const std::optional<Trust>& trust) {
   return trust && std::find(trust->statuses.begin(), trust->statuses.end(), TrustStatus::kModelMismatch) !=
                       trust->statuses.end();
@@ -455,7 +419,7 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
   }
   const bool misfits = isMismatch(estimate.statuses);
   if (estimate.statuses == std::vector<std::string>{getNotice(Notice::kOk).name}) {
-    text += describeUnnoticed(inferred, parameters);
+    text += describeUnnoticed(inferred.model_test, parameters);
   }
   for (const std::string& status : estimate.statuses) {
     const std::string explained = explainStatus(status, inferred, estimate, parameters, features);

@@ -7,10 +7,12 @@
 #include "framework/cli/commands/measurements/trials_of_run.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
+#include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/joint/recording_list.hpp"
 #include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/measurement/direct_inference.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
@@ -116,6 +118,11 @@ void inferJointly(const InferArguments& arguments) {
   WaitingLine waiting(fmt::format("infer from {} recordings", recordings.get().size()));
   JointInference inferred = inferrer.infer(recordings.get());
   inferred.asked = describeAsked(arguments, recordings.get());
+  waiting.describe("look for what the model lacks");
+  const InferenceSource source(findExperimentFile(arguments.run));
+  const ExperimentSpec& experiment = source.getExperiment();
+  testModel(experiment, readRecordings(experiment, recordings.get(), parseKnownValues(arguments.known)),
+            inferred);
   waiting.clear();
   if (arguments.json) {
     std::cout << makeJointJson(inferred, inferrer.getParameters()) << "\n";
