@@ -229,12 +229,15 @@ void tryWrap(const VectorXd& measured, const ResponseLayout& layout, Index outpu
   const Index times = layout.times.size(), first = layout.getRow(output, 0);
   const VectorXd values = measured.segment(first, times);
   const double modulus = findModulus(layout.times, values);
+  constexpr double kSame = 1e-4;  // more digits would follow the noise
+  bool is_said = false;
   for (const int digits : {1, 2, 3, 6}) {
     const std::string text = toShortText(modulus, digits);
     const double rounded = std::stod(text);
-    if (rounded <= 0.0) {
+    if (rounded <= 0.0 || is_said) {
       continue;
     }
+    is_said = std::abs(rounded - modulus) < kSame * modulus;
     const VectorXd whole = unwrap(layout.times, values, rounded);
     const double lowest = values.minCoeff() >= 0.0 ? 0.0 : -0.5 * rounded;
     const std::string said = fmt::format(

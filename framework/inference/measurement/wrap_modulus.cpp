@@ -36,25 +36,33 @@ VectorXd calcSecondDifferences(const VectorXd& values) {
   return values.tail(n) - 2.0 * values.segment(1, n) + values.head(n);
 }
 
-/// Least squares of the second differences over the modulus, for the turns that the last one makes. They
+VectorXd calcFourthDifferences(const VectorXd& values) {
+  return calcSecondDifferences(calcSecondDifferences(values));
+}
+
+/// Least squares of the fourth differences over the modulus, for the turns that the last one makes. They
 /// begin with the range, a little less than the modulus.
 double findBySmoothness(const VectorXd& times, const VectorXd& values) {
   constexpr int kIterations = 3;
-  constexpr double kSmoother = 0.1, kFarthest = 2.0;
+  constexpr double kHalf = 0.5, kFarthest = 2.0;
+  // of what jumps at random, over the modulus: second differences are within half of it, evenly, and theirs
+  // follow
+  const double by_chance = std::sqrt(6.0 / 12.0);
   const double range = values.maxCoeff() - values.minCoeff();
-  const VectorXd measured = calcSecondDifferences(values);
+  const VectorXd measured = calcFourthDifferences(values);
   double modulus = range;
   VectorXd continued = measured;
   for (int i = 0; i < kIterations; ++i) {
     const VectorXd turns = ((unwrap(times, values, modulus) - values) / modulus).array().round();
-    const VectorXd bends = calcSecondDifferences(turns);
+    const VectorXd bends = calcFourthDifferences(turns);
     modulus = -bends.dot(measured) / bends.squaredNorm();
     continued = measured + modulus * bends;
     if (!(modulus < kFarthest * range && kFarthest * modulus > range)) {  // nor where nothing turns
       return 0.0;
     }
   }
-  return continued.squaredNorm() < kSmoother * kSmoother * measured.squaredNorm() ? modulus : 0.0;
+  const double rest = std::sqrt(continued.squaredNorm() / static_cast<double>(continued.size()));
+  return rest < kHalf * by_chance * modulus ? modulus : 0.0;
 }
 
 }  // namespace

@@ -153,6 +153,12 @@ TEST(WrapModulus, IsThatOfWhatTurnsAlone) {
   };
   EXPECT_NEAR(findModulus(times, wrap(2.0)), 2.0, 1e-3);
   EXPECT_NEAR(findModulus(times, wrap(1.7)), 1.7, 1e-3);
+  // thirteen samples a period, which move by up to 38 % of the modulus
+  const VectorXd curved = VectorXd::NullaryExpr(200, [](Index i) {
+    const double y = 0.07 * std::sin(0.5 * static_cast<double>(i));
+    return y - 0.091 * std::floor(y / 0.091);
+  });
+  EXPECT_NEAR(findModulus(times, curved), 0.091, 2e-3 * 0.091);
   EXPECT_EQ(findModulus(times, ramp), 0.0);
   EXPECT_EQ(findModulus(times, (20.0 * times).array().sin()), 0.0);
   EXPECT_EQ(findModulus(times, VectorXd::Ones(200)), 0.0);
