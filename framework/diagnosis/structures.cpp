@@ -31,8 +31,8 @@ double calcLogOccupied(const RecordingsProblem& problem, const VectorXd& best) {
   return 0.5 * u * std::log(2.0 * M_PI) - 0.5 * log_determinant - u * std::log(2.0);
 }
 
-/// The log determinant of the noise's covariance, of recordings in which the structure has a part in it:
-/// noise of the excitation acts by its response.
+/// The log determinants of the noise of recordings whose excitation is noisy: that acts by the structure's
+/// own response.
 double calcLogNoise(const RecordingsProblem& problem, const RecordedFeatures& recordings) {
   double sum = 0.0;
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {

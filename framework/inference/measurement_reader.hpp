@@ -84,10 +84,10 @@ class MeasurementReader {
   /// interpolated.
   std::optional<ExperimentSpec> followTimes(const Table& table, std::optional<double> start) const;
 
-  /// How every command reads a recording from an experiment: with its features at the times of the table
-  /// (followTimes), its measured excitation as the table or its own file has it, as much later as the window
-  /// (followMeasuredSignals; beside: s), and the modes that stand beside the table (findModesFile). None
-  /// where that changes nothing, and of a run that reduced its samples.
+  /// How every command reads a recording: the experiment at the times of the table (followTimes). The
+  /// measured excitation is that of the table or its own file, as much later as the window
+  /// (followMeasuredSignals; beside: s). Modes are those beside the table (findModesFile). None where nothing
+  /// changes, and of a run that reduced its samples.
   std::optional<ExperimentSpec> follow(const Table& table, std::optional<double> start,
                                        double beside = 0.0) const;
 

@@ -43,9 +43,9 @@ UnitConversion findConversion(const Table& table, const Column& column, const Co
   }
 }
 
-/// What stands behind the last bracket, comma or slash of a name, or underscore of one of times, if it is a
-/// unit that means another number, or in brackets behind times, which is to be one; "" if not. "x_in" may be
-/// an input, "log (left)" a side.
+/// A unit that ends a name, behind a bracket, a comma, a slash or, of times, an underscore; "" where none
+/// does. One that changes no number is none. In brackets behind times stands a unit, even an unknown one.
+/// "x_in" may be an input, "log (left)" a side.
 std::string findHiddenUnit(const std::string& name, const std::string& unit) {
   const bool of_times = unit == "s";
   const std::size_t open = name.find_last_of(of_times ? "(,/_" : "(,/");

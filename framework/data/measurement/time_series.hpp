@@ -19,12 +19,12 @@ std::string describeTime(double seconds);
 /// The names of the columns that may hold the times, for readTable().
 std::vector<std::string> listTimeColumns(const TimeBase& base);
 
-/// What is assumed of a clock whose unit is stated neither by the table nor for it, a phrase: "column 't'
-/// states no unit: s is assumed"; "" where it is, or there is no column.
+/// What is assumed of a clock whose unit nobody states, as "column 't' states no unit: s is assumed". ""
+/// where it is stated, or there is no column.
 std::string describeAssumedUnit(const Table& table, const TimeBase& base);
 
-/// Of a column whose name ends in another unit of that dimension, which is not read, as "Zeit(ms)", a
-/// sentence that says what is assumed and how to state it; "" of others. unit: that which is assumed.
+/// A sentence on a unit in the name of a column, which is not read, as in "Zeit(ms)". It says that `unit` is
+/// assumed and how to state another. "" where the name has none of that dimension.
 std::string describeUnreadUnit(const Table& table, const ColumnSpec& wanted, const std::string& unit);
 
 /// The times of the rows after the start (s), strictly increasing. `rows`: how many there are, for a constant

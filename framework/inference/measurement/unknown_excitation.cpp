@@ -87,8 +87,8 @@ TableSpec makePulse(const TableSpec& table, const TableUnknown& change, double s
   return pulse;
 }
 
-/// A model with changes of its tables, each of which is in its place where its own input, behind the others,
-/// is 0, and comes before the simulation where that is `away` (s).
+/// A model with changes of its tables. Each has an input of its own, behind the others: at 0 it is in its
+/// place, at `away` (s) it comes before the simulation.
 struct ChangedModel {
   ModelSpec model;
   double away = 0.0;

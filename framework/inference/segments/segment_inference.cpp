@@ -183,8 +183,8 @@ ModelSpec takeExcitation(const ModelSpec& segment, const VectorXd& point, double
   return taken;
 }
 
-/// Whitens each segment by what is not known of the excitation within it as well, at the best parameters;
-/// what acted before is in its initial state. False where these cannot be simulated.
+/// Whitens each segment by what is not known of the excitation within it, too. What acted before is in its
+/// initial state. best: parameters. False where these cannot be simulated.
 bool countUnknownExcitation(const VectorXd& best, PreparedSegments& prepared) {
   SegmentedRecording& recording = *prepared.recording;
   const MatrixXd states = SegmentedMisfit(*prepared.simulator, recording).findStates(best);
