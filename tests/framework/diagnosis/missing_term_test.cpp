@@ -78,6 +78,27 @@ TEST(MissingTerm, ExplainsAMisfitAsWell) {
   EXPECT_GT(cart.inferred.findMissing()->share, 0.9);
 }
 
+/// Two recordings together.
+JointInference testJointly(const std::string& force) {
+  const ExperimentSpec experiment = loadExperiment(kCart, {});
+  const RecordedFeatures recordings{makeLayout(experiment), {measureCart(force), measureCart(force, 1)}, {}};
+  const RecordingsProblem problem(experiment, recordings);
+  JointInference inferred;
+  inferred.alone.resize(2);
+  inferred.joint = samplePosterior(problem.get(), Eigen::MatrixXd(3, 0), {});
+  testModel(experiment, recordings, inferred);
+  return inferred;
+}
+
+TEST(MissingTerm, IsNamedOfRecordingsTogetherThatEachAloneDoNotShow) {
+  const char* const slight = "F - k3*x^3 - 0.003*tanh(x_dot/0.01)";
+  EXPECT_EQ(testCart(measureCart(slight)).listStatuses(), Statuses{"ok"});
+  const JointInference joint = testJointly(slight);
+  ASSERT_NE(joint.findMissing(), nullptr);
+  EXPECT_LT(joint.findMissing()->shifts[1], -1.0);
+  EXPECT_EQ(testJointly(kSound).findMissing(), nullptr);
+}
+
 TEST(MissingTerm, IsNotAskedForWithoutASimulation) {
   const Eigen::VectorXd features = measureCart(kSound);
   InferredMeasurement by_map;
