@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "framework/inference/joint_inference.hpp"
+#include "framework/inference/joint/joint_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
