@@ -103,9 +103,12 @@ const RankedTerm* fitBest(const CurrentFit& current, const RecordedFeatures& rec
   return best != nullptr && best->finding.log_evidence > 0.0 ? best : nullptr;
 }
 
-/// Whether what remains with a term is noise as it is supposed.
-bool explains(const CurrentFit& current, const RecordedFeatures& recording, const FittedTerm& term) {
-  const RecordingsProblem problem(term.augmented.experiment, recording);
+/// Whether what remains with a term is noise of the sizes that are supposed.
+bool explains(const CurrentFit& current, const RecordedFeatures& recordings, const FittedTerm& term,
+              const NoiseSpec& noise) {
+  ExperimentSpec experiment = term.augmented.experiment;
+  experiment.noise = noise;
+  const RecordingsProblem problem(experiment, recordings);
   const VectorXd residual = problem.linearize(term.point).residual;
   const double degrees = std::max(1.0, current.degrees - static_cast<double>(term.augmented.added));
   return testResidual(residual, degrees, problem.listInfos()).calcPValue() >= kMismatchLevel;
@@ -173,9 +176,10 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
   return missing;
 }
 
-/// Of recordings that noise explains, as `experiment` has it. unstated: of that which was found.
+/// Of recordings that noise explains, as `experiment` has it. stated: what its file says of it.
 ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                        const KnownFit& known, bool unstated) {
+                        const KnownFit& known, const NoiseSpec& stated) {
+  const bool unstated = hasUnknownNoise(stated);
   const ScoredCandidates scored =
       scoreCandidates(experiment, recordings, known.point, CandidateKinds::kWithoutStates);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
@@ -196,8 +200,9 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
     return test;
   }
   MissingTerm missing = describe(*best, ranked);
-  missing.explains = explains(current, recordings, best->fitted);
-  if (missing.explains || best->finding.holds_cautiously) {
+  const bool leaves_noise = explains(current, recordings, best->fitted, current.experiment.noise);
+  missing.explains = leaves_noise && (unstated || explains(current, recordings, best->fitted, stated));
+  if (leaves_noise || best->finding.holds_cautiously) {
     test.missing = std::move(missing);
   }
   return test;
@@ -206,14 +211,14 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
 /// With what was found of the noise.
 ModelTest testExplained(ExperimentSpec experiment, const RecordedFeatures& recording,
                         const InferredMeasurement& inferred, const KnownFit& known) {
-  const bool unstated = hasUnknownNoise(experiment.noise);
+  const NoiseSpec stated = experiment.noise;
   takeFoundNoise(inferred, experiment.noise);
   const SimulatorFit* fit =
       inferred.posterior && inferred.posterior->fit ? &*inferred.posterior->fit : nullptr;
   const bool has_outliers = fit != nullptr && !fit->outliers.empty();
   ModelTest test =
       testExplained(experiment, has_outliers ? leaveOutliers(experiment, recording, known.point) : recording,
-                    known, unstated);
+                    known, stated);
   if (fit != nullptr && fit->hasOffset() && test.missing && test.missing->term.rfind("offset.", 0) == 0) {
     test.missing.reset();  // the same in other words
   }
@@ -285,10 +290,9 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
       listStatuses(inferred, static_cast<Index>(experiment.model.parameters.size()));
   const KnownFit known{joint.best, joint.chi_square, joint.degrees};
   try {
-    inferred.model_test =
-        isMismatch(statuses) || inferred.disagrees()
-            ? ModelTest{explainMisfit(experiment, recordings, known.point)}
-            : testExplained(experiment, recordings, known, hasUnknownNoise(experiment.noise));
+    inferred.model_test = isMismatch(statuses) || inferred.disagrees()
+                              ? ModelTest{explainMisfit(experiment, recordings, known.point)}
+                              : testExplained(experiment, recordings, known, experiment.noise);
   } catch (const std::runtime_error&) {
     // as above
   }

@@ -174,6 +174,10 @@ static void check_features(const twinmap_map* map, twinmap_inferrer* inferrer, d
     for (p = 0; p < 4; ++p) {
       EXPECT(one[p] == mean[i][p]);
     }
+    EXPECT(twinmap_get_stddev(inferrer, one, 4) == TWINMAP_OK);
+    for (p = 0; p < 4; ++p) {
+      EXPECT(one[p] == stddev[i][p]);
+    }
   }
   EXPECT_WRONG(twinmap_predict(map, features[0], NULL, ROWS, 0, mean[0], stddev[0]), "threads");
   EXPECT_WRONG(twinmap_predict(map, NULL, NULL, ROWS, 1, mean[0], stddev[0]), "features");

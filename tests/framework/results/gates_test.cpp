@@ -24,6 +24,8 @@ TEST(Gates, HoldForEveryParameterUnlessOneIsNamed) {
 
 TEST(Gates, IncludeTheirLimits) {
   EXPECT_TRUE(checkGate(makeGate("coverage95", 0.95, 0.99), makeMetrics()).passed);
+  EXPECT_FALSE(checkGate(makeGate("coverage95", 0.95 + 1e-9, 0.99), makeMetrics()).passed);
+  EXPECT_FALSE(checkGate(makeGate("coverage95", 0.95, 0.99 - 1e-9), makeMetrics()).passed);
 }
 
 TEST(Gates, AMissingValueFails) {

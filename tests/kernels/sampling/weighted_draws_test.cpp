@@ -45,6 +45,16 @@ TEST(WeightedDraws, QuantilesAreThoseOfTheDistributionThatWeightsMake) {
   }
 }
 
+TEST(WeightedDraws, EachPointLiesInTheMiddleOfItsWeight) {
+  MatrixXd points(1, 2);
+  points << 1.0, 3.0;
+  const MatrixXd quantiles = calcQuantiles(weigh(points, Eigen::Vector2d(std::log(0.6), std::log(0.4))),
+                                           Eigen::Vector3d(0.3, 0.55, 0.8));
+  EXPECT_NEAR(quantiles(0, 0), 1.0, 1e-12);
+  EXPECT_NEAR(quantiles(0, 1), 2.0, 1e-12);
+  EXPECT_NEAR(quantiles(0, 2), 3.0, 1e-12);
+}
+
 TEST(WeightedDraws, QuantilesDoNotDependOnTheOrder) {
   const VectorXd at = makeMidpoints(101), log_weights = at.array().sin();
   const MatrixXd forwards = calcQuantiles(weigh(at.transpose(), log_weights), Eigen::Vector2d(0.16, 0.84));
