@@ -5,6 +5,7 @@
 #include "framework/c_api/handles.hpp"
 #include "framework/data/measurement/files/make_table.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
+#include "framework/diagnosis/missing_term.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
 
@@ -64,11 +65,17 @@ twinmap_result inferBy(twinmap_inferrer* inferrer, const Infer& infer) {
   });
 }
 
-twinmap::InferredMeasurement inferTable(twinmap_inferrer& inferrer, const VectorXd& known,
-                                        const std::vector<twinmap::NamedColumn>& columns) {
-  const twinmap::Table table = twinmap::makeTable(
-      "measurement", columns, inferrer.source.getReader().listColumns(), inferrer.session->getMissingCells());
-  return inferrer.session->infer(table, inferrer.start, known);
+twinmap::Table makeTable(const twinmap_inferrer& inferrer, const std::vector<twinmap::NamedColumn>& columns) {
+  return twinmap::makeTable("measurement", columns, inferrer.source.getReader().listColumns(),
+                            inferrer.session->getMissingCells());
+}
+
+/// As the command does.
+twinmap::InferredMeasurement inferAndTest(twinmap_inferrer& inferrer, const VectorXd& known,
+                                          const twinmap::Table& table) {
+  twinmap::InferredMeasurement measurement = inferrer.session->infer(table, inferrer.start, known);
+  twinmap::testModel(inferrer.source.getReader(), table, inferrer.start, known, measurement);
+  return measurement;
 }
 
 }  // namespace
@@ -136,7 +143,7 @@ twinmap_result twinmap_infer_columns(twinmap_inferrer* inferrer, const twinmap_c
                        ConstVector(column.count > 0 ? &require(column.values, column.name) : nullptr,
                                    static_cast<Index>(column.count))});
     }
-    return inferTable(self, known, named);
+    return inferAndTest(self, known, makeTable(self, named));
   });
 }
 
@@ -144,7 +151,7 @@ twinmap_result twinmap_infer_file(twinmap_inferrer* inferrer, const char* path) 
   return inferBy(inferrer, [&](twinmap_inferrer& self, const VectorXd& known) {
     const twinmap::Table table = twinmap::readTable(
         &require(path, "path"), self.source.getReader().listColumns(), self.session->getMissingCells());
-    return self.session->infer(table, self.start, known);
+    return inferAndTest(self, known, table);
   });
 }
 
@@ -179,6 +186,6 @@ twinmap_result twinmap_infer_pushed(twinmap_inferrer* inferrer) {
       const std::vector<double>& values = self.pushed.values[i];
       named.push_back({self.pushed.names[i], ConstVector(values.data(), static_cast<Index>(values.size()))});
     }
-    return inferTable(self, known, named);
+    return self.session->infer(makeTable(self, named), self.start, known);  // online: its time counts
   });
 }

@@ -49,7 +49,7 @@ ALLOWED = {
         "study",
         "kernels",
     },
-    "c_api": {"base", "data", "estimation", "inference"},
+    "c_api": {"base", "data", "diagnosis", "estimation", "inference"},
     "export": {"base", "experiment", "simulation", "models/fmu", "data", "estimation", "store", "inference", "kernels"},
     "cli": {
         "base",

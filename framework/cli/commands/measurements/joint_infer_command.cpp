@@ -84,8 +84,9 @@ std::optional<int> findDraws(const InferArguments& arguments) {
 void inferTrial(const InferArguments& arguments, const MeasurementReader& reader,
                 const Recording& recording) {
   DirectInference session(reader, findDraws(arguments).value_or(SimulatorPosteriorOptions{}.draws));
-  InferredMeasurement inferred =
-      session.infer(*recording.table, recording.start, readKnown(arguments, reader));
+  const Eigen::VectorXd known = readKnown(arguments, reader);
+  InferredMeasurement inferred = session.infer(*recording.table, recording.start, known);
+  testModel(reader, *recording.table, recording.start, known, inferred);
   inferred.asked = describeAsked(arguments);
   printInferred(arguments, inferred, reader, session);
 }
