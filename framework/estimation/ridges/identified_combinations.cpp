@@ -138,6 +138,9 @@ std::string makeFlowMap(const DerivedEntry& entry) {
 bool isAmong(const Combination& combination, const MatrixXd& gradients, const VectorXd& point,
              const VectorXd& widths) {
   constexpr double kSame = 1e-6;  // central differences of a smooth function
+  if (gradients.rows() == 0) {
+    return false;  // nothing is derived, and there may be no point
+  }
   const VectorXd own = calcGradient(combination, point).cwiseProduct(widths).normalized();
   for (Index q = 0; q < gradients.rows(); ++q) {
     const VectorXd other = widths.cwiseProduct(gradients.row(q).transpose());
