@@ -274,10 +274,14 @@ std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const
       (!misfits && findBest(inferred, u).point.size() == 0)) {
     return std::nullopt;
   }
-  RecordedFeatures recording = readRecording(reader, table, start, known);
-  testModel(experiment, recording, inferred);
-  return misfits || inferred.findMissing() != nullptr ? std::make_optional(std::move(recording))
-                                                      : std::nullopt;
+  try {
+    RecordedFeatures recording = readRecording(reader, table, start, known);
+    testModel(experiment, recording, inferred);
+    return misfits || inferred.findMissing() != nullptr ? std::make_optional(std::move(recording))
+                                                        : std::nullopt;
+  } catch (const MeasurementError&) {
+    return std::nullopt;  // a map took from the table what is not a recording of the model
+  }
 }
 
 void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordings,

@@ -19,8 +19,8 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
                InferredMeasurement& inferred);
 
 /// The same of a window of a table, as `reader` infers it at `known` inputs. Left out are a reduced response,
-/// a measurement that a fault explains, and one that states its own noise. Returns the recording for a
-/// diagnosis, after a misfit, a clock's fault, or a term that is missing. Throws MeasurementError.
+/// a measurement that a fault explains, and a table that is not a recording of the model. Returns the
+/// recording for a diagnosis, after a misfit, a clock's fault, or a term that is missing.
 std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const Table& table,
                                           std::optional<double> start, const Eigen::VectorXd& known,
                                           InferredMeasurement& inferred);
