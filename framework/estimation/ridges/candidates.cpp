@@ -247,13 +247,30 @@ bool isConstant(const Combination& combination, const FlatDirections& flat,
   return variance <= kShare * kShare * squares.dot(variances) + kThreeTimes * kThreeTimes * unknown;
 }
 
+namespace {
+
+/// How many products there are of so many of `count` parameters, each exponent from -most to most.
+double countProducts(Index count, Index size, int most) {
+  double products = 0.5;  // a product and its inverse are one
+  for (Index k = 0; k < size; ++k) {
+    products *= 2.0 * most * static_cast<double>(count - k) / static_cast<double>(k + 1);
+  }
+  return products;
+}
+
+}  // namespace
+
 std::vector<Candidate> findProducts(const FlatDirections& flat, const std::vector<ParameterSpec>& parameters,
                                     double largest) {
   constexpr std::array<int, 3> kMost{4, 3, 2};  // exponents of two, three and four parameters
+  constexpr double kProducts = 1e5;             // some seconds: four of 13 parameters, three of 18
   std::vector<Candidate> found;
   const auto g = static_cast<Index>(flat.parameters.size());
   for (std::size_t extra = 0; extra < kMost.size() && static_cast<Index>(extra) + 2 <= g; ++extra) {
     const auto size = static_cast<Index>(extra) + 2;
+    if (countProducts(g, size, kMost[extra]) > kProducts) {
+      break;
+    }
     visitSubsets(g, size, [&](const std::vector<Index>& chosen) {
       visitExponents(size, kMost[extra], [&](const VectorXi& exponents) {
         if (!isPrimitive(exponents)) {

@@ -14,7 +14,8 @@ struct Candidate {
 };
 
 /// Products of powers of two to four parameters of the group whose residual is at most `largest`, one for
-/// each ratio of exponents. Negative powers are of parameters whose bounds have one sign.
+/// each ratio of exponents. Of more than 13 parameters no four are tried, of more than 18 no three. Negative
+/// powers are of parameters whose bounds have one sign.
 std::vector<Candidate> findProducts(const FlatDirections& flat, const std::vector<ParameterSpec>& parameters,
                                     double largest);
 

@@ -143,6 +143,7 @@ TEST(SelectEstimate, SaysThatItLiesAtBoundsWhateverIsSaidBeside) {
   inferred.posterior->fit->beyond = {"offset"};  // a nuisance
   inferred.posterior->fit->test.chi_square_p = 0.0;
   inferred.posterior->fit->residual = Eigen::VectorXd::Constant(10, 30.0);
+  inferred.posterior->fit->test.largest = 0;
   inferred.posterior->fit->chi_square = 9000.0;
   EXPECT_EQ(listStatuses(inferred), (Statuses{"model_mismatch", "at_bounds"}));
   const std::string text = describeTrust(inferred, makeParameters(), {});

@@ -255,7 +255,10 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
   const MatrixXd starts = makeStarts(surface.getDimensions(), seed, most);
   BasinHunt hunt(surface, options.from_prior ? surface.spreadAsPrior(starts) : starts, options);
   MatrixXd scouts(surface.getDimensions(), options.scouts + given.cols());
-  scouts << hunt.takeStarts(options.scouts), given;
+  scouts.leftCols(options.scouts) = hunt.takeStarts(options.scouts);
+  if (given.cols() > 0) {  // else it may have no rows either
+    scouts.rightCols(given.cols()) = given;
+  }
   hunt.search(scouts);
   while (hunt.isExplained() && !hunt.isConfirmed() && hunt.countTaken() < options.starts) {
     hunt.search(hunt.takeStarts(std::clamp(options.scouts, 1, options.starts - hunt.countTaken())));
