@@ -127,6 +127,7 @@ PosteriorEstimate makeSimulated() {
   posterior.source = PosteriorSource::kSimulator;
   posterior.fit = SimulatorFit{};
   posterior.fit->degrees = 10.0;
+  posterior.fit->test.largest = 0;
   Estimate& estimate = posterior.estimate;
   estimate.mean = Eigen::Vector2d(3.0, 5.0);
   estimate.stddev = Eigen::Vector2d(1.0, 0.1);
@@ -143,7 +144,6 @@ TEST(SelectEstimate, SaysThatItLiesAtBoundsWhateverIsSaidBeside) {
   inferred.posterior->fit->beyond = {"offset"};  // a nuisance
   inferred.posterior->fit->test.chi_square_p = 0.0;
   inferred.posterior->fit->residual = Eigen::VectorXd::Constant(10, 30.0);
-  inferred.posterior->fit->test.largest = 0;
   inferred.posterior->fit->chi_square = 9000.0;
   EXPECT_EQ(listStatuses(inferred), (Statuses{"model_mismatch", "at_bounds"}));
   const std::string text = describeTrust(inferred, makeParameters(), {});
