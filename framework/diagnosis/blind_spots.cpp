@@ -1,7 +1,6 @@
 #include "framework/diagnosis/blind_spots.hpp"
 
 #include "framework/diagnosis/remainder/residual_noise.hpp"
-#include "framework/diagnosis/scored_candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -9,13 +8,8 @@ namespace twinmap {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                      double level) {
-  requireKnownNoise(experiment, "what would go unnoticed");
-  const VectorXd center = calcBoxCenter(collectUnknown(experiment.model));
-  const ScoredCandidates scored = scoreCandidates(experiment, recordings, center);
+std::vector<BlindSpot> calcBlindSpots(const ScoredCandidates& scored, Index p, double level) {
   const double needed = calcCriticalZ(level, scored.tested) + calcCriticalZ(0.1, 1);  // 95 %, one-sided
-  const auto p = static_cast<Index>(experiment.model.parameters.size());
   std::vector<BlindSpot> spots;
   for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
     BlindSpot spot{scored.candidates[i], kInfinity, VectorXd::Zero(p)};
@@ -28,6 +22,14 @@ std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const Re
     spots.push_back(std::move(spot));
   }
   return spots;
+}
+
+std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                                      double level) {
+  requireKnownNoise(experiment, "what would go unnoticed");
+  const VectorXd center = calcBoxCenter(collectUnknown(experiment.model));
+  return calcBlindSpots(scoreCandidates(experiment, recordings, center),
+                        static_cast<Index>(experiment.model.parameters.size()), level);
 }
 
 }  // namespace twinmap

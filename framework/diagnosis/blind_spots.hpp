@@ -5,6 +5,7 @@
 
 #include "framework/diagnosis/candidates/term_candidate.hpp"
 #include "framework/diagnosis/problem/recorded_problem.hpp"
+#include "framework/diagnosis/scored_candidates.hpp"
 
 namespace twinmap {
 
@@ -14,6 +15,9 @@ struct BlindSpot {
   double noticed = 0.0;      ///< size that is found in 95 % of measurements; infinite where it never is
   Eigen::VectorXd shifts{};  ///< p: how far the parameters have moved by then, in sds
 };
+
+/// Of candidates that were scored, where a model has p parameters of the machine.
+std::vector<BlindSpot> calcBlindSpots(const ScoredCandidates& scored, Eigen::Index p, double level);
 
 /// Of all candidates at the centre of the box; by the linear model. Throws ExperimentError where the size of
 /// the noise is unknown.

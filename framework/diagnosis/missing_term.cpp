@@ -4,12 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/diagnosis/blind_spots.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/term_ranking.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"
-#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 
@@ -27,10 +27,9 @@ struct KnownFit {
 };
 
 KnownFit findBest(const InferredMeasurement& inferred, Index u) {
-  if (inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->isSimulated() &&
-      inferred.posterior->fit->best.size() >= u) {
-    const SimulatorFit& fit = *inferred.posterior->fit;
-    return {fit.best.head(u), fit.chi_square, fit.degrees};  // before the sizes of a clock's faults
+  const SimulatorFit* fit = findFit(inferred);
+  if (fit != nullptr && fit->best.size() >= u) {
+    return {fit->best.head(u), fit->chi_square, fit->degrees};  // before the sizes of a clock's faults
   }
   if (inferred.refined && inferred.refined->isAccepted() && inferred.refined->point.size() >= u) {
     return {inferred.refined->point.head(u), inferred.refined->chi_square, inferred.refined->degrees};
@@ -39,11 +38,8 @@ KnownFit findBest(const InferredMeasurement& inferred, Index u) {
 }
 
 /// The sizes of noise that were found, in the place of those stated.
-void takeFoundNoise(const InferredMeasurement& inferred, NoiseSpec& noise) {
-  if (!inferred.posterior || !inferred.posterior->fit) {
-    return;
-  }
-  for (const NoiseReport& report : inferred.posterior->fit->noise) {
+void takeFoundNoise(const SimulatorFit& fit, NoiseSpec& noise) {
+  for (const NoiseReport& report : fit.noise) {
     for (OutputNoiseSpec& one : noise.stddev) {
       if (one.name.text == report.output && report.found.size_was_inferred && report.stddev > 0.0) {
         one.stddev = NoiseStddev(report.stddev / (noise.scale > 0.0 ? noise.scale : 1.0));
@@ -128,22 +124,18 @@ MissingTerm describe(const RankedTerm& best, const std::vector<RankedTerm>& rank
   return missing;
 }
 
-/// Of those visible, up to the size that matters.
+/// The blind spot that moves a parameter most, up to the size that matters.
 std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored, Index p) {
-  const double needed = calcCriticalZ(kLevel, scored.tested) + calcCriticalZ(0.1, 1);  // 95 %, one-sided
   std::optional<UnnoticedTerm> worst;
-  for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
-    const TermCandidate& candidate = scored.candidates[i];
-    if (!scored.scores[i].visible) {
+  for (const BlindSpot& spot : calcBlindSpots(scored, p, kLevel)) {
+    if (!std::isfinite(spot.noticed)) {
       continue;
     }
-    const double size = std::min(needed * scored.scores[i].stddev, candidate.size);
-    const VectorXd shifts = scored.test->calcShifts(static_cast<Index>(i), size)
-                                .head(p)
-                                .cwiseQuotient(scored.stddevs.head(p))
-                                .cwiseAbs();
+    const TermCandidate& candidate = spot.candidate;
+    const double size = std::min(spot.noticed, candidate.size);
     Index most = 0;
-    if (const double shift = shifts.maxCoeff(&most); !worst || shift > worst->shift) {
+    if (const double shift = spot.shifts.cwiseAbs().maxCoeff(&most) * size / spot.noticed;
+        !worst || shift > worst->shift) {
       worst = {candidate.term, candidate.meaning, candidate.unit, size, static_cast<std::size_t>(most),
                shift};
     }
@@ -212,9 +204,10 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
 ModelTest testExplained(ExperimentSpec experiment, const RecordedFeatures& recording,
                         const InferredMeasurement& inferred, const KnownFit& known) {
   const NoiseSpec stated = experiment.noise;
-  takeFoundNoise(inferred, experiment.noise);
-  const SimulatorFit* fit =
-      inferred.posterior && inferred.posterior->fit ? &*inferred.posterior->fit : nullptr;
+  const SimulatorFit* fit = findFit(inferred);
+  if (fit != nullptr) {
+    takeFoundNoise(*fit, experiment.noise);
+  }
   const bool has_outliers = fit != nullptr && !fit->outliers.empty();
   ModelTest test =
       testExplained(experiment, has_outliers ? leaveOutliers(experiment, recording, known.point) : recording,
