@@ -69,7 +69,7 @@ struct TestedResidual {
 
 /// Without the outliers, which are named.
 TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos,
-                           std::vector<std::string>& outliers) {
+                           SimulatorFit& fit) {
   constexpr int kDigits = 3;
   const VectorXd& residual = posterior.standardized.residual;
   TestedResidual tested{residual, infos, posterior.standardized.degrees};
@@ -85,7 +85,9 @@ TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vecto
       continue;  // beyond what its sensor shows, as it should be
     }
     if (has_weights && posterior.residual_weights[i] < kOutlierWeight) {
-      outliers.push_back(fmt::format("{} ({} sd)", info.name, toShortText(std::abs(residual[i]), kDigits)));
+      fit.outliers.push_back(
+          fmt::format("{} ({} sd)", info.name, toShortText(std::abs(residual[i]), kDigits)));
+      fit.outlier_features.push_back(i);
       tested.degrees -= 1.0;
     } else {
       inliers.push_back(i);
@@ -104,7 +106,7 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
   fit.found_best = posterior.found_best;
   fit.simulations = posterior.simulations;
   if (posterior.degrees > 0.0) {
-    const TestedResidual tested = takeInliers(posterior, infos, fit.outliers);
+    const TestedResidual tested = takeInliers(posterior, infos, fit);
     fit.best = posterior.best;
     fit.residual = tested.residual;
     fit.chi_square = tested.residual.squaredNorm();

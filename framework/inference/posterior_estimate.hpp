@@ -39,9 +39,10 @@ struct SimulatorFit {
   ResidualTest test;
   std::string largest_feature{};  ///< its name
   std::vector<std::string>
-      outliers{};                     ///< features that are not noise and count for nothing, with their size
-  std::vector<NoiseReport> noise{};   ///< of the outputs of which something was inferred
-  Eigen::VectorXd best{};             ///< the unknown parameters (u)
+      outliers{};  ///< features that are not noise and count for nothing, with their size
+  std::vector<Eigen::Index> outlier_features{};  ///< their numbers among the experiment's
+  std::vector<NoiseReport> noise{};              ///< of the outputs of which something was inferred
+  Eigen::VectorXd best{};                        ///< the unknown parameters (u)
   std::vector<std::string> beyond{};  ///< of them, those that fit best beyond a bound (findBeyondBounds)
   int searches = 0, found_best = 0, simulations = 0;
 

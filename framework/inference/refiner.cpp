@@ -74,7 +74,8 @@ void SimulatorRefiner::sampleAndJudge(const VectorXd& features, const VectorXd& 
                                       const TrustModel* trust, const SimulatorPosteriorOptions& options,
                                       InferredMeasurement& inferred) const {
   inferred.posterior = samplePosterior(features, known, describeNoise({}),
-                                       listStarts(inferred, features, known, trust), options);
+                                       listStarts(inferred, features, known, trust), options)
+                           .estimate;
   const SimulatorFit& fit = *inferred.posterior->fit;
   if (trust != nullptr && !fit.isAsStated()) {
     inferred.trust.reset();

@@ -57,41 +57,41 @@ SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment,
   return options;
 }
 
-PosteriorEstimate SimulatorSampler::sampleUnder(const NoiseHypothesis& noise, const VectorXd& features,
-                                                const VectorXd& known, const MatrixXd& given,
-                                                const SimulatorPosteriorOptions& options) const {
+SampledMeasurement SimulatorSampler::sampleUnder(const NoiseHypothesis& noise, const VectorXd& features,
+                                                 const VectorXd& known, const MatrixXd& given,
+                                                 const SimulatorPosteriorOptions& options) const {
   const auto u = static_cast<Index>(getUnknown().size());
   PosteriorProblem problem{getUnknown(), getModelSpec().priors, {makeTrial(features, known)}, u};
   problem.trials.front().noise = noise;
-  return makeEstimate(problem.trials.front(), twinmap::samplePosterior(problem, given, options));
+  SampledMeasurement sampled{noise, twinmap::samplePosterior(problem, given, options), {}};
+  sampled.estimate = makeEstimate(problem.trials.front(), sampled.posterior);
+  return sampled;
 }
 
-PosteriorEstimate SimulatorSampler::sampleAsStated(const VectorXd& features, const VectorXd& known,
-                                                   const NoiseHypothesis& stated, const MatrixXd& given,
-                                                   const SimulatorPosteriorOptions& options) const {
+SampledMeasurement SimulatorSampler::sampleAsStated(const VectorXd& features, const VectorXd& known,
+                                                    const NoiseHypothesis& stated, const MatrixXd& given,
+                                                    const SimulatorPosteriorOptions& options) const {
   const bool is_known = stated.outputs.empty();
-  PosteriorEstimate sampled =
+  SampledMeasurement sampled =
       sampleUnder(is_known ? stated : guessSizes(stated, *makeTrial(features, known).model, features),
                   features, known, given, options);
-  if (!is_known && sampled.fit->isSimulated()) {
-    sampled = sampleUnder(stated, features, known, sampled.fit->best, options);
+  if (!is_known && sampled.estimate.fit->isSimulated()) {
+    sampled = sampleUnder(stated, features, known, sampled.posterior.best, options);
   }
   return sampled;
 }
 
-PosteriorEstimate SimulatorSampler::samplePosterior(const VectorXd& features, const VectorXd& known,
-                                                    const NoiseHypothesis& stated, const MatrixXd& given,
-                                                    const SimulatorPosteriorOptions& options) const {
-  PosteriorEstimate sampled = sampleAsStated(features, known, stated, given, options);
-  if (!sampled.fit->isSimulated() || sampled.fit->isPlausible()) {
+SampledMeasurement SimulatorSampler::samplePosterior(const VectorXd& features, const VectorXd& known,
+                                                     const NoiseHypothesis& stated, const MatrixXd& given,
+                                                     const SimulatorPosteriorOptions& options) const {
+  SampledMeasurement sampled = sampleAsStated(features, known, stated, given, options);
+  const SimulatorFit& fit = *sampled.estimate.fit;
+  if (!fit.isSimulated() || fit.isPlausible() || !readsOutputs()) {
     return sampled;
   }
-  if (!readsOutputs()) {
-    return sampled;
-  }
-  for (const NoiseHypothesis& noise : listNoise(stated, features, known, sampled.fit->best)) {
-    PosteriorEstimate other = sampleUnder(noise, features, known, sampled.fit->best, options);
-    if (other.isReliable() && explains(*other.fit, sampled.fit->residual.size())) {
+  for (const NoiseHypothesis& noise : listNoise(stated, features, known, fit.best)) {
+    SampledMeasurement other = sampleUnder(noise, features, known, fit.best, options);
+    if (other.estimate.isReliable() && explains(*other.estimate.fit, fit.residual.size())) {
       return other;
     }
   }
@@ -125,6 +125,11 @@ PosteriorEstimate SimulatorSampler::makeEstimate(const MeasuredTrial& trial,
   PosteriorEstimate made = makePosteriorEstimate(posterior, getUnknown(),
                                                  static_cast<Index>(getModelSpec().parameters.size()), infos);
   nameNoise(made.fit->noise);
+  if (trial.own_model) {
+    for (Index& feature : made.fit->outlier_features) {
+      feature = trial.own_model->getWhole().features[static_cast<std::size_t>(feature)];
+    }
+  }
   return made;
 }
 

@@ -24,6 +24,13 @@ struct LinearizedMeasurement {
   std::optional<NoiseWhitener> whitener;  ///< of these; none where their noise depends on the response
 };
 
+/// The posterior of a measurement, and the hypothesis of its noise that it is under.
+struct SampledMeasurement {
+  NoiseHypothesis noise;
+  SimulatorPosterior posterior;  ///< of all unknown parameters
+  PosteriorEstimate estimate;    ///< the same, as it is reported
+};
+
 /// Posteriors of measurements on the simulator of their experiment.
 class SimulatorSampler : public MeasuredSimulator {
  public:
@@ -31,23 +38,23 @@ class SimulatorSampler : public MeasuredSimulator {
 
   /// The posterior of all unknown parameters under a hypothesis of the noise (samplePosterior). given: points
   /// to search from as well (u x n). known: q. Throws std::invalid_argument for a feature without noise.
-  PosteriorEstimate sampleUnder(const NoiseHypothesis& noise, const Eigen::VectorXd& features,
-                                const Eigen::VectorXd& known, const Eigen::MatrixXd& given,
-                                const SimulatorPosteriorOptions& options) const;
+  SampledMeasurement sampleUnder(const NoiseHypothesis& noise, const Eigen::VectorXd& features,
+                                 const Eigen::VectorXd& known, const Eigen::MatrixXd& given,
+                                 const SimulatorPosteriorOptions& options) const;
 
   /// The same under the stated noise (describeNoise), searched first with a guess of sizes that are unknown.
-  PosteriorEstimate sampleAsStated(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
-                                   const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
-                                   const SimulatorPosteriorOptions& options) const;
+  SampledMeasurement sampleAsStated(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                                    const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
+                                    const SimulatorPosteriorOptions& options) const;
 
   /// The same under the stated noise or, where that does not explain the measurement, under
   /// the first of other hypotheses that does (listNoiseHypotheses): a few samples left out, noise of another
   /// size, an offset, coloured noise. What is coloured and larger than stated may as well be physics that the
   /// model lacks, and more than one sample in twenty are not exceptions: then the stated one's it is. Cost:
   /// some more posteriors where the stated noise does not explain the measurement.
-  PosteriorEstimate samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
-                                    const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
-                                    const SimulatorPosteriorOptions& options) const;
+  SampledMeasurement samplePosterior(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                                     const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
+                                     const SimulatorPosteriorOptions& options) const;
 
   /// The posterior of a trial alone as an estimate, its residual in the places of the features that are
   /// there.

@@ -205,13 +205,14 @@ std::optional<ClockedMeasurement> findClockFaults(const RecordedSamples& recorde
   for (std::size_t k = 0; k < fit.faults.size(); ++k) {
     given[fit.point.size() + static_cast<Index>(k)] = fit.faults[k].size;
   }
-  found.posterior =
+  found.sampled =
       found.simulator->sampleUnder(recorded.noise, found.features, recorded.known, given, options);
-  if (!found.posterior.isReliable() || !found.posterior.fit->isPlausible()) {
+  const PosteriorEstimate& posterior = found.sampled.estimate;
+  if (!posterior.isReliable() || !posterior.fit->isPlausible()) {
     return std::nullopt;
   }
   found.faults = fit.faults;
-  const BoundedDraws& draws = found.posterior.estimate.draws;
+  const BoundedDraws& draws = posterior.estimate.draws;
   for (std::size_t k = 0; k < found.faults.size(); ++k) {
     const VectorXd own = draws.points.row(fit.point.size() + static_cast<Index>(k)).transpose();
     ClockFault& fault = found.faults[k];

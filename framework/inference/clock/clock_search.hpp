@@ -14,7 +14,7 @@ namespace twinmap {
 struct ClockedMeasurement {
   std::shared_ptr<const SimulatorRefiner> simulator;  ///< the faults' sizes behind the model's unknown
   Eigen::VectorXd features;                           ///< NaN also where they cannot be simulated
-  PosteriorEstimate posterior;
+  SampledMeasurement sampled;
   std::vector<ClockFault> faults;
 };
 

@@ -15,9 +15,6 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
-#include "framework/inference/measurement/supposed_input.hpp"
-#include "framework/inference/measurement/unknown_excitation.hpp"
-#include "framework/inference/measurement/unstated_noise.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -221,7 +218,7 @@ JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string
                              std::optional<int> draws) {
   for (const Trial& trial : expandTrials(root)) {
     auto reader =
-        std::make_unique<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
+        std::make_shared<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
     const ExperimentSpec& experiment = reader->getExperiment();
     const ResponseLayout& layout = reader->getLayout();
     auto simulator = std::make_unique<const SimulatorRefiner>(
@@ -264,115 +261,78 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
   return *found;
 }
 
-JointInferrer::Measured JointInferrer::read(const Recording& recording) const {
-  Measured measured{&find(recording.trial)};
-  if (std::optional<ExperimentSpec> followed =
-          measured.getReader().follow(*recording.table, recording.start)) {
-    measured.own_reader = std::make_unique<const MeasurementReader>(std::move(*followed));
-    const ExperimentSpec& experiment = measured.own_reader->getExperiment();
-    const ResponseLayout& layout = measured.own_reader->getLayout();
-    measured.own_simulator = std::make_unique<const SimulatorRefiner>(
-        experiment, layout,
-        shareAmongThreads(makeTrustedSimulator(experiment.model, layout.times, layout.modes)));
+ExplainedRecording JointInferrer::explain(const Recording& recording) const {
+  const Member& member = find(recording.trial);
+  std::optional<RecordingSetup> setup = followRecording(*member.reader, *recording.table, recording.start);
+  if (!setup) {  // with a simulator of its own, for a thread of its own
+    const ExperimentSpec& experiment = member.reader->getExperiment();
+    setup = RecordingSetup{
+        member.reader, std::make_shared<const SimulatorRefiner>(experiment, member.reader->getLayout(),
+                                                                member.simulator->getSimulator().clone())};
   }
-  const MeasurementReader& reader = measured.getReader();
-  measured.found = reader.readAvailableFeatures(*recording.table, recording.start);
-  if (auto supposed = makeOwnSimulator(reader, measured.getSimulator(), measured.found,
-                                       measured.member->known, options_)) {
-    measured.own_simulator = std::move(supposed);
-  }
-  return measured;
+  return explainRecording(*setup, *recording.table, recording.start, member.known, options_);
 }
 
-std::vector<RecordingInference> JointInferrer::inferAlone(const std::vector<Recording>& recordings,
-                                                          const std::vector<Measured>& measured,
-                                                          const std::vector<MeasuredTrial>& trials) const {
-  std::vector<RecordingInference> alone(recordings.size());
-  std::vector<PosteriorProblem> problems;
-  for (std::size_t k = 0; k < recordings.size(); ++k) {
-    const ModelSpec& model = measured[k].getReader().getExperiment().model;
-    const std::vector<ParameterSpec>& unknown = measured[k].getSimulator().getUnknown();
-    problems.push_back({unknown, model.priors, {trials[k]}, static_cast<Index>(unknown.size())});
-    alone[k].label = recordings[k].label;
-    InferredMeasurement& inferred = alone[k].inferred;
-    inferred.source = recordings[k].table->source;
-    inferred.start = measured[k].getReader().getStart(*recordings[k].table, recordings[k].start);
-    inferred.left_out = measured[k].found.remarks;
-    inferred.remarks = describeBridged(model);
-  }
-  const int threads = countThreads();
+std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Recording>& recordings) const {
+  const int threads = countThreads(), count = static_cast<int>(recordings.size());
   const bool side_by_side =
-      recordings.size() >= static_cast<std::size_t>(threads) || mayRunSideBySide(problems.front());
-  SearchStage stage("each recording alone", static_cast<int>(recordings.size()));
+      count >= threads || static_cast<Index>(members_.front().simulator->getUnknown().size()) > kManyUnknown;
+  SearchStage stage("each recording alone", count);
   std::atomic<int> done{0};
+  std::vector<ExplainedRecording> alone(recordings.size());
   runTasks(side_by_side ? threads : 1, recordings.size(), [&](std::size_t k) {
-    alone[k].posterior = samplePosterior(problems[k], MatrixXd(problems[k].drawn, 0), options_);
-    stage.show(++done, static_cast<int>(recordings.size()));
+    alone[k] = explain(recordings[k]);
+    stage.show(++done, count);
   });
-  for (std::size_t k = 0; k < recordings.size(); ++k) {
-    alone[k].inferred.posterior = measured[k].getSimulator().makeEstimate(trials[k], alone[k].posterior);
-  }
   return alone;
 }
 
 PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& recordings,
-                                            std::vector<MeasuredTrial> trials) const {
+                                            const std::vector<ExplainedRecording>& alone) const {
   PosteriorProblem problem;
   problem.unknown = getParameters();
   problem.priors = members_.front().reader->getExperiment().model.priors;
   const auto shared = static_cast<Index>(problem.unknown.size());
   for (std::size_t k = 0; k < recordings.size(); ++k) {
-    const Recording& recording = recordings[k];
-    MeasuredTrial& trial = trials[k];
-    const std::vector<ParameterSpec>& own = find(recording.trial).simulator->getUnknown();
+    problem.trials.push_back(alone[k].makeTrial());
+    MeasuredTrial& trial = problem.trials.back();
+    const std::vector<ParameterSpec>& own = alone[k].setup.simulator->getUnknown();
     for (Index j = shared; j < static_cast<Index>(own.size()); ++j) {
       trial.unknown[static_cast<std::size_t>(j)] = static_cast<Index>(problem.unknown.size());
       problem.unknown.push_back(own[static_cast<std::size_t>(j)]);
-      problem.unknown.back().name.text = recording.label + "." + problem.unknown.back().name.text;
+      problem.unknown.back().name.text = recordings[k].label + "." + problem.unknown.back().name.text;
     }
   }
-  problem.trials = std::move(trials);
   const auto all = static_cast<Index>(problem.unknown.size());
   problem.drawn = all <= kMaxDrawn ? all : shared;
   return problem;
 }
 
-void JointInferrer::nameUnstatedNoise(const std::vector<Measured>& measured, JointInference& inferred) {
-  for (std::size_t k = 0; k < measured.size(); ++k) {
-    InferredMeasurement& alone = inferred.alone[k].inferred;
-    const bool misfits = !alone.posterior->fit->isPlausible();
-    if (misfits || inferred.disagrees()) {
-      const std::vector<std::string> noisy =
-          describeUnstatedNoise(measured[k].getReader(), measured[k].getSimulator(), measured[k].found,
-                                measured[k].member->known, *alone.posterior);
-      alone.remarks.insert(alone.remarks.end(), noisy.begin(), noisy.end());
+void JointInferrer::nameNoise(std::vector<ExplainedRecording>& alone, JointInference& inferred) {
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    InferredMeasurement& one = inferred.alone[k].inferred;
+    if (!one.posterior->fit->isPlausible() || inferred.disagrees()) {
+      nameUnstatedNoise(alone[k]);
+      one.remarks = alone[k].inferred.remarks;
     }
   }
 }
 
 JointInference JointInferrer::infer(const std::vector<Recording>& recordings) const {
   JointInference inferred;
-  std::vector<std::unique_ptr<Simulator>> simulators;
-  std::vector<Measured> measured;
-  std::vector<MeasuredTrial> trials;
-  for (const Recording& recording : recordings) {
-    measured.push_back(read(recording));
-    const Measured& one = measured.back();
-    trials.push_back(one.getSimulator().makeTrial(one.found.features, one.member->known));
-    trials.back().noise = one.getSimulator().describeNoise(one.found.clipped);
-    simulators.push_back(trials.back().simulator->clone());  // for a thread of its own
-    trials.back().simulator = simulators.back().get();
+  std::vector<ExplainedRecording> alone = explainAlone(recordings);
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    inferred.alone.push_back({recordings[k].label, alone[k].inferred, alone[k].posterior});
+    inferred.simulations += alone[k].posterior.simulations;
   }
-  inferred.alone = inferAlone(recordings, measured, trials);
   for (const RecordingInference& one : inferred.alone) {
-    inferred.simulations += one.posterior.simulations;
     if (!(one.posterior.degrees > 0.0)) {
       inferred.joint.message = one.label + " cannot be simulated anywhere within the bounds";
       return inferred;
     }
   }
   const auto shared = static_cast<Index>(getParameters().size());
-  const PosteriorProblem problem = makeProblem(recordings, std::move(trials));
+  const PosteriorProblem problem = makeProblem(recordings, alone);
   const SearchStage together("all recordings together");
   inferred.joint = samplePosterior(problem, makeStarts(problem, inferred.alone, shared), joint_options_);
   inferred.simulations += inferred.joint.simulations;
@@ -390,7 +350,7 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
       testAgreement(inferred.joint.misfit, separate, linearizeParts(problem, inferred.joint.best), problem,
                     inferred.joint.best, options_.seed);
   inferred.contradictions = findContradictions(inferred.alone, shared);
-  nameUnstatedNoise(measured, inferred);
+  nameNoise(alone, inferred);
   if (inferred.disagrees()) {
     inferred.scatter = combineRecordings(inferred.alone, getParameters());
   }

@@ -9,7 +9,7 @@
 #include "framework/estimation/posterior/agreement.hpp"
 #include "framework/experiment/yaml/yaml_node.hpp"
 #include "framework/inference/known_value.hpp"
-#include "framework/inference/refiner.hpp"
+#include "framework/inference/measurement/explained_recording.hpp"
 
 namespace twinmap {
 
@@ -84,43 +84,27 @@ class JointInferrer {
   const MeasurementReader& getReader(const std::string& trial) const { return *find(trial).reader; }
   std::vector<std::string> listTrials() const;
 
-  /// Cost: that of DirectInference::infer() for each recording, and two simulations with derivatives of each
-  /// recording and joint draw.
+  /// Of recordings as they are explained alone (explainRecording): with the faults of their sensors and
+  /// clocks. Cost: that of DirectInference::infer() for each recording, and two simulations with derivatives
+  /// of each recording and joint draw.
   JointInference infer(const std::vector<Recording>& recordings) const;
 
  private:
   struct Member {
     std::string name;
-    std::unique_ptr<const MeasurementReader> reader;
+    std::shared_ptr<const MeasurementReader> reader;
     std::unique_ptr<const SimulatorRefiner> simulator;
     Eigen::VectorXd known;
   };
 
-  /// A recording as it was read, and what simulates it: its trial's where nothing is its own.
-  struct Measured {
-    const Member* member;
-    std::unique_ptr<const MeasurementReader> own_reader{};
-    std::unique_ptr<const SimulatorRefiner> own_simulator{};
-    AvailableFeatures found{};
-
-    const MeasurementReader& getReader() const { return own_reader ? *own_reader : *member->reader; }
-    const SimulatorRefiner& getSimulator() const {
-      return own_simulator ? *own_simulator : *member->simulator;
-    }
-  };
-
   const Member& find(const std::string& trial) const;
-  /// With the recording's times and excitation (MeasurementReader::follow), and what is not known of that
-  /// (makeOwnSimulator).
-  Measured read(const Recording& recording) const;
-  /// trials: of the recordings, each with a simulator of its own.
-  std::vector<RecordingInference> inferAlone(const std::vector<Recording>& recordings,
-                                             const std::vector<Measured>& measured,
-                                             const std::vector<MeasuredTrial>& trials) const;
+  ExplainedRecording explain(const Recording& recording) const;
+  std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings) const;
   /// Of recordings that the model does not explain, or that disagree: of others it would take long.
-  static void nameUnstatedNoise(const std::vector<Measured>& measured, JointInference& inferred);
+  static void nameNoise(std::vector<ExplainedRecording>& alone, JointInference& inferred);
+  /// Each with the faults that explain it alone. The recordings must outlive it.
   PosteriorProblem makeProblem(const std::vector<Recording>& recordings,
-                               std::vector<MeasuredTrial> trials) const;
+                               const std::vector<ExplainedRecording>& alone) const;
 
   std::vector<Member> members_;
   SimulatorPosteriorOptions options_, joint_options_;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "framework/inference/measurement/explained_recording.hpp"
 #include "framework/inference/measurement/measurement_inference.hpp"
-#include "framework/inference/refiner.hpp"
 
 namespace twinmap {
 
@@ -16,9 +16,7 @@ class DirectInference final : public MeasurementInference {
                            SimulatorRefiner::Model model = SimulatorRefiner::Model::kToBeChecked,
                            bool profiles = false);
 
-  ~DirectInference() override;
-
-  const MeasurementReader& getReader() const override { return reader_; }
+  const MeasurementReader& getReader() const override { return *setup_.reader; }
   bool refines() const override { return false; }
   bool samplesPosteriors() const override { return false; }
   MissingCells getMissingCells() const override { return MissingCells::kKeep; }
@@ -29,56 +27,26 @@ class DirectInference final : public MeasurementInference {
   /// deviations that it states go before the experiment's.
   InferredMeasurement infer(const Table& table, std::optional<double> start,
                             const Eigen::VectorXd& known) override;
-  /// From what the reader found in the table.
-  InferredMeasurement infer(const Table& table, std::optional<double> start, const AvailableFeatures& found,
-                            const Eigen::VectorXd& known);
   /// Cost: that of samplePosterior().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
-  /// Whether faults of the recorder's clock explain a model_mismatch (findClockFaults); then they are
-  /// what was inferred. Its posterior is the simulator's.
+  /// twinmap::tryClock() of its experiment.
   bool tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
                 InferredMeasurement& inferred) const;
 
  private:
-  /// What speaks against the model, where it explains nothing and no fault of the recording does.
-  std::vector<std::string> listAgainst(const AvailableFeatures& found, const Eigen::VectorXd& known,
-                                       const InferredMeasurement& inferred) const;
-  /// Whether masses of a thousandth, given in g, explain a misfit; "" where not. Cost: that of
-  /// findLeastChiSquare() for each body whose mass is a number, and once more for all of several.
-  std::string explainByGrams(const AvailableFeatures& found, const Eigen::VectorXd& known,
-                             const SimulatorFit& fit) const;
-  struct LikeRecording;
-
   /// What infers with the times and the excitation of a table (MeasurementReader::follow); null where they
   /// are the experiment's.
-  LikeRecording* follow(const Table& table, std::optional<double> start);
+  const RecordingSetup* follow(const Table& table, std::optional<double> start);
+  /// Adds what the experiment says.
+  void describe(InferredMeasurement& inferred) const;
 
-  InferredMeasurement infer(const SimulatorRefiner& simulator, const Eigen::VectorXd& features,
-                            const Eigen::VectorXd& known, const std::vector<ClippedSample>& clipped) const;
-
-  /// Where a measurement is not explained: the same without its spikes (findSpikedFeatures), if that explains
-  /// it or leaves less than half of the misfit. They are then what is not noise, beside whatever else is
-  /// wrong.
-  void tryWithoutSpikes(const SimulatorRefiner& simulator, AvailableFeatures& found,
-                        const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
-
-  /// Where a measurement is not explained: the same without what every other sample is off by
-  /// (findAlternation), if that explains it.
-  void tryWithoutAlternation(const SimulatorRefiner& simulator, AvailableFeatures& found,
-                             const Eigen::VectorXd& known, InferredMeasurement& inferred) const;
-
-  /// The simple fault of the recording that explains a gross misfit, or "".
-  std::string explainMisfit(const SimulatorRefiner& simulator, const AvailableFeatures& found,
-                            const Eigen::VectorXd& known, const PosteriorEstimate& posterior) const;
-
-  const MeasurementReader& reader_;
-  const SimulatorRefiner simulator_;
+  const RecordingSetup setup_;
   SimulatorPosteriorOptions options_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
   std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
   std::vector<std::string> unused_;                      // parameters
-  std::unique_ptr<LikeRecording> followed_;              // of the last table that was followed
+  std::optional<RecordingSetup> followed_;               // of the last table that was followed
 };
 
 }  // namespace twinmap

@@ -64,7 +64,8 @@ class Supposing {
                                    stated);
     const VectorXd features = found_.features + reader_.getExtractor().extract(input_.offset);
     const PosteriorEstimate fitted =
-        sampler.sampleAsStated(features, known_, sampler.describeNoise(found_.clipped), given_, options_);
+        sampler.sampleAsStated(features, known_, sampler.describeNoise(found_.clipped), given_, options_)
+            .estimate;
     if (!fitted.fit || !fitted.fit->isSimulated()) {
       return false;
     }

@@ -70,8 +70,10 @@ class LinearMeasurement : public ::testing::Test {
  protected:
   PosteriorEstimate sample(const VectorXd& measured, const ExperimentSpec& experiment) const {
     const SimulatorRefiner sampler = makeSampler(experiment);
-    return sampler.samplePosterior(measured, VectorXd(0), sampler.describeNoise({}), MatrixXd(2, 0),
-                                   makePosteriorOptions(experiment, 2000));
+    return sampler
+        .samplePosterior(measured, VectorXd(0), sampler.describeNoise({}), MatrixXd(2, 0),
+                         makePosteriorOptions(experiment, 2000))
+        .estimate;
   }
 
   PosteriorEstimate sample(const VectorXd& measured) const { return sample(measured, experiment_); }

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "framework/inference/inferrer.hpp"
+#include "framework/inference/measurement_reader.hpp"
+#include "framework/inference/refiner.hpp"
+
+namespace twinmap {
+
+/// What reads a recording, and what simulates it; of its own times and excitation where it has them.
+struct RecordingSetup {
+  std::shared_ptr<const MeasurementReader> reader;
+  std::shared_ptr<const SimulatorRefiner> simulator;  ///< for one thread, which OpenMP's others help
+};
+
+/// Of an experiment that Simbody has checked, with other times or excitation.
+RecordingSetup makeSetup(ExperimentSpec followed);
+
+/// With the times and the excitation of a window of a table (MeasurementReader::follow); none where they are
+/// the experiment's.
+std::optional<RecordingSetup> followRecording(const MeasurementReader& reader, const Table& table,
+                                              std::optional<double> start);
+
+/// A recording, or a window of one, with the faults of its sensors and its clock that explain it.
+struct ExplainedRecording {
+  RecordingSetup setup;          ///< faults of its clock are nuisance parameters of the simulator
+  AvailableFeatures found;       ///< without its spikes
+  Eigen::VectorXd known;         ///< of the inputs
+  NoiseHypothesis noise;         ///< with the faults of its sensors
+  SimulatorPosterior posterior;  ///< of all that the simulator leaves unknown
+  InferredMeasurement inferred;  ///< the same, as it is reported
+
+  /// As a part of a problem; the setup must outlive it.
+  MeasuredTrial makeTrial() const;
+};
+
+/// The posterior of a recording by simulation alone, under the stated noise or, where that does not explain
+/// it, without its spikes (findSpikedFeatures: if that explains it or leaves less than half of the misfit),
+/// under other hypotheses of the noise (SimulatorSampler::samplePosterior), without what every other sample
+/// is off by (findAlternation), or by a clock with faults (findClockFaults). Else the simple fault that
+/// explains a gross misfit, and what speaks against the model, are named. What is unknown of the excitation
+/// is supposed (makeOwnSimulator).
+/// Throws MeasurementError where the table cannot be used.
+ExplainedRecording explainRecording(const RecordingSetup& setup, const Table& table,
+                                    std::optional<double> start, const Eigen::VectorXd& known,
+                                    const SimulatorPosteriorOptions& options);
+
+/// Remarks noise of an excitation that was not stated and may be what is left (describeUnstatedNoise).
+void nameUnstatedNoise(ExplainedRecording& explained);
+
+/// Whether faults of the recorder's clock explain a model_mismatch (findClockFaults); then they are what was
+/// inferred, whose posterior is the simulator's.
+bool tryClock(const RecordingSetup& setup, const AvailableFeatures& found, const Eigen::VectorXd& known,
+              const SimulatorPosteriorOptions& options, InferredMeasurement& inferred);
+
+}  // namespace twinmap
