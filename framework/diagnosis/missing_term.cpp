@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "framework/diagnosis/blind_spots.hpp"
+#include "framework/diagnosis/problem/sensor_faults.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/term_ranking.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
@@ -35,33 +36,6 @@ KnownFit findBest(const InferredMeasurement& inferred, Index u) {
     return {inferred.refined->point.head(u), inferred.refined->chi_square, inferred.refined->degrees};
   }
   return {};
-}
-
-/// The sizes of noise that were found, in the place of those stated.
-void takeFoundNoise(const SimulatorFit& fit, NoiseSpec& noise) {
-  for (const NoiseReport& report : fit.noise) {
-    for (OutputNoiseSpec& one : noise.stddev) {
-      if (one.name.text == report.output && report.found.size_was_inferred && report.stddev > 0.0) {
-        one.stddev = NoiseStddev(report.stddev / (noise.scale > 0.0 ? noise.scale : 1.0));
-      }
-    }
-  }
-}
-
-/// Without the samples that are no noise at the best fit.
-RecordedFeatures leaveOutliers(const ExperimentSpec& experiment, const RecordedFeatures& recording,
-                               const VectorXd& point) {
-  constexpr double kLargest = 5.0;  // of thousands of normal numbers none is beyond 5
-  RecordedFeatures others = recording;
-  const RecordingsProblem problem(experiment, recording);
-  const VectorXd residual = problem.linearize(point).residual;
-  const std::vector<Index>& fitted = problem.get().trials.front().model->getWhole().features;
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    if (std::abs(residual[static_cast<Index>(i)]) > kLargest && fitted[i] < others.features.front().size()) {
-      others.features.front()[fitted[i]] = NAN;
-    }
-  }
-  return others;
 }
 
 /// Searched from `start`, with the noise of the residual where its size is not known. It has no point where
@@ -100,11 +74,8 @@ const RankedTerm* fitBest(const CurrentFit& current, const RecordedFeatures& rec
 }
 
 /// Whether what remains with a term is noise of the sizes that are supposed.
-bool explains(const CurrentFit& current, const RecordedFeatures& recordings, const FittedTerm& term,
-              const NoiseSpec& noise) {
-  ExperimentSpec experiment = term.augmented.experiment;
-  experiment.noise = noise;
-  const RecordingsProblem problem(experiment, recordings);
+bool explains(const CurrentFit& current, const RecordedFeatures& recordings, const FittedTerm& term) {
+  const RecordingsProblem problem(term.augmented.experiment, recordings);
   const VectorXd residual = problem.linearize(term.point).residual;
   const double degrees = std::max(1.0, current.degrees - static_cast<double>(term.augmented.added));
   return testResidual(residual, degrees, problem.listInfos()).calcPValue() >= kMismatchLevel;
@@ -168,10 +139,10 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
   return missing;
 }
 
-/// Of recordings that noise explains, as `experiment` has it. stated: what its file says of it.
+/// Of recordings that noise explains, as large as it was found (takeFaults).
 ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                        const KnownFit& known, const NoiseSpec& stated) {
-  const bool unstated = hasUnknownNoise(stated);
+                        const KnownFit& known) {
+  const bool unstated = hasUnknownNoise(experiment.noise);
   const ScoredCandidates scored =
       scoreCandidates(experiment, recordings, known.point, CandidateKinds::kWithoutStates);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
@@ -192,30 +163,59 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
     return test;
   }
   MissingTerm missing = describe(*best, ranked);
-  const bool leaves_noise = explains(current, recordings, best->fitted, current.experiment.noise);
-  missing.explains = leaves_noise && (unstated || explains(current, recordings, best->fitted, stated));
+  const bool leaves_noise = explains(current, recordings, best->fitted);
+  RecordedFeatures stated = recordings;
+  stated.noise.clear();
+  missing.explains = leaves_noise && (unstated || explains(current, stated, best->fitted));
   if (leaves_noise || best->finding.holds_cautiously) {
     test.missing = std::move(missing);
   }
   return test;
 }
 
-/// With what was found of the noise.
-ModelTest testExplained(ExperimentSpec experiment, const RecordedFeatures& recording,
+/// A term competes with an offset, which is one of them.
+ModelTest testExplained(const ExperimentSpec& experiment, RecordedFeatures recording,
                         const InferredMeasurement& inferred, const KnownFit& known) {
-  const NoiseSpec stated = experiment.noise;
   const SimulatorFit* fit = findFit(inferred);
   if (fit != nullptr) {
-    takeFoundNoise(*fit, experiment.noise);
+    takeFaults(*fit, SensorFaults::kSizes, 0, recording);
   }
-  const bool has_outliers = fit != nullptr && !fit->outliers.empty();
-  ModelTest test =
-      testExplained(experiment, has_outliers ? leaveOutliers(experiment, recording, known.point) : recording,
-                    known, stated);
+  ModelTest test = testExplained(experiment, recording, known);
   if (fit != nullptr && fit->hasOffset() && test.missing && test.missing->term.rfind("offset.", 0) == 0) {
     test.missing.reset();  // the same in other words
   }
   return test;
+}
+
+/// The recordings whose clocks have no fault, and the point without what is of the others alone.
+std::pair<RecordedFeatures, VectorXd> leaveClocks(const ExperimentSpec& experiment,
+                                                  const RecordedFeatures& recordings,
+                                                  const JointInference& inferred) {
+  std::vector<std::size_t> kept;
+  auto next = static_cast<Index>(experiment.model.parameters.size());
+  VectorXd point = inferred.joint.best.head(next);
+  for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
+    const auto own = static_cast<Index>(recordings.makeExperiment(experiment, k).model.nuisance.size());
+    const std::size_t faults = inferred.alone[k].inferred.clock_faults.size();
+    if (faults == 0) {
+      kept.push_back(k);
+      point.conservativeResize(point.size() + own);
+      point.tail(own) = inferred.joint.best.segment(next, own);
+    }
+    next += own + static_cast<Index>(faults);
+  }
+  return {recordings.select(kept), point};
+}
+
+/// Each with what is known of its sensors.
+RecordedFeatures takeFaults(RecordedFeatures recordings, const JointInference& inferred,
+                            SensorFaults faults) {
+  for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
+    if (const SimulatorFit* fit = findFit(inferred.alone[k].inferred); fit != nullptr && fit->isPlausible()) {
+      takeFaults(*fit, faults, k, recordings);
+    }
+  }
+  return recordings;
 }
 
 /// Whether the model, and that of each trial, is a system of bodies that is simulated in time.
@@ -285,13 +285,19 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   }
   const std::vector<std::string> statuses =
       listStatuses(inferred, static_cast<Index>(experiment.model.parameters.size()));
-  const KnownFit known{joint.best, joint.chi_square, joint.degrees};
+  const bool misfits = isMismatch(statuses) || inferred.disagrees();
+  const auto [kept, point] = leaveClocks(
+      experiment,
+      takeFaults(recordings, inferred, misfits ? SensorFaults::kSizes : SensorFaults::kSizesAndOffsets),
+      inferred);
+  if (kept.features.empty()) {
+    return;
+  }
   try {
-    inferred.model_test = isMismatch(statuses) || inferred.disagrees()
-                              ? ModelTest{explainMisfit(experiment, recordings, known.point)}
-                              : testExplained(experiment, recordings, known, experiment.noise);
+    inferred.model_test = misfits ? ModelTest{explainMisfit(experiment, kept, point)}
+                                  : testExplained(experiment, kept, {point, joint.chi_square, joint.degrees});
   } catch (const std::runtime_error&) {
-    // as above
+    // the best fit cannot be simulated again: the inference's own statuses say what is wrong
   }
 }
 

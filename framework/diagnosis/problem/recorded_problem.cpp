@@ -172,7 +172,7 @@ ExperimentSpec RecordedFeatures::makeExperiment(const ExperimentSpec& experiment
 }
 
 RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& recordings) const {
-  RecordedFeatures selected{layout, {}, known, {}, setups};
+  RecordedFeatures selected{layout, {}, known, {}, {}, setups};
   for (const std::size_t k : recordings) {
     if (!trials.empty()) {
       selected.trials.push_back(trials[k]);
@@ -180,6 +180,9 @@ RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& record
     selected.features.push_back(features[k]);
     if (!own.empty()) {
       selected.own.push_back(own[k]);
+    }
+    if (!noise.empty()) {
+      selected.noise.push_back(noise[k]);
     }
   }
   return selected;
@@ -322,6 +325,12 @@ RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const Rec
     : outputs_(countOutputs(recordings)) {
   const std::vector<std::size_t> assigned = assignSimulators(experiment, recordings, simulators_);
   problem_ = makeRecordedProblem(simulators_, assigned, experiment, recordings);
+  for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
+    faults_.push_back(recordings.getNoise(k));
+    if (!faults_.back().isPlain()) {
+      problem_.trials[k].noise = faults_.back();
+    }
+  }
 }
 
 std::vector<FeatureInfo> RecordingsProblem::listInfos() const {
@@ -343,13 +352,21 @@ std::vector<FeatureInfo> RecordingsProblem::listInfos() const {
 LinearizedRecordings RecordingsProblem::linearize(const VectorXd& point) const {
   LinearizedRecordings all;
   const auto u = static_cast<Index>(getUnknown().size());
-  for (const MeasuredTrial& trial : problem_.trials) {
+  for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
+    const MeasuredTrial& trial = problem_.trials[k];
     TrialMisfit own(trial);
     const VectorXd at = own.box.normalize(point(trial.unknown));
-    const LocalMisfit local = own.misfit.linearize(at);
+    LocalMisfit local = own.misfit.linearize(at);
     if (!local.status.ok) {
       throw std::runtime_error("the best fit cannot be simulated with its derivatives: " +
                                local.status.reason);
+    }
+    if (!faults_[k].isPlain()) {
+      ResidualLoss::Standardized standardized =
+          ResidualLoss(faults_[k], *trial.model, trial.model->getWhole())
+              .standardize(local.residual, local.jacobian, static_cast<double>(local.residual.size()));
+      local.residual = std::move(standardized.residual);
+      local.jacobian = std::move(standardized.jacobian);
     }
     const Index before = all.residual.size(), count = local.residual.size();
     all.residual.conservativeResize(before + count);
@@ -368,9 +385,10 @@ RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
   const Prior prior(getUnknown(), problem_.priors);
   std::vector<std::unique_ptr<TrialMisfit>> own;
   std::vector<MeasuredPart> parts;
-  for (const MeasuredTrial& trial : problem_.trials) {
+  for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
+    const MeasuredTrial& trial = problem_.trials[k];
     own.push_back(std::make_unique<TrialMisfit>(trial));
-    parts.push_back({&own.back()->misfit, trial.model, trial.unknown});
+    parts.push_back({&own.back()->misfit, trial.model, trial.unknown, makeLosses(faults_[k], *trial.model)});
   }
   MisfitSurface surface(std::move(parts), coordinates, prior);
   MatrixXd from(starts.rows(), starts.cols());

@@ -34,10 +34,15 @@ struct RecordedFeatures {
   Eigen::VectorXd known;                  ///< of the inputs
   /// Of each recording; null where all is as the experiment says. Empty where it is for all.
   std::vector<std::shared_ptr<const OwnSetup>> own{};
+  /// Of each recording, where its sensors have faults (takeFaults); empty where that is known of none.
+  std::vector<NoiseHypothesis> noise{};
   std::vector<TrialSetup> setups{};   ///< of the experiment's trials in the place of layout and known
   std::vector<std::size_t> trials{};  ///< of each recording, the number of its trial; empty without trials
 
   std::size_t getTrial(std::size_t recording) const { return trials.empty() ? 0 : trials[recording]; }
+  NoiseHypothesis getNoise(std::size_t recording) const {
+    return noise.empty() ? NoiseHypothesis() : noise[recording];
+  }
   const OwnSetup* findOwn(std::size_t recording) const {
     return own.empty() ? nullptr : own[recording].get();
   }
@@ -94,7 +99,7 @@ SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFe
 
 /// A linear model of all recordings at a point: residual(at + step) ~ residual - jacobian step.
 struct LinearizedRecordings {
-  Eigen::VectorXd residual;          ///< n, in noise standard deviations
+  Eigen::VectorXd residual;          ///< n, in noise standard deviations, without the faults of sensors
   Eigen::MatrixXd jacobian;          ///< n x u, per unit of the parameters
   std::vector<Eigen::Index> starts;  ///< first residual of each sequence of neighbours in time, ascending
 };
@@ -131,6 +136,7 @@ class RecordingsProblem {
  private:
   std::vector<std::unique_ptr<const SimulatorRefiner>> simulators_;  // of trials, and recordings of their own
   std::vector<std::size_t> outputs_;                                 // of each recording, how many
+  std::vector<NoiseHypothesis> faults_;                              // of each recording's sensors
   PosteriorProblem problem_;
 };
 

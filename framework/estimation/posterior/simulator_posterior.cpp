@@ -40,7 +40,7 @@ void setBest(const BasinSearch& found, const LogCoordinates& coordinates, Simula
 ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTrial& trial,
                                        const LocalSurface& best) {
   if (trial.segments) {
-    return {best.residual, best.degrees, {}};
+    return {best.residual, {}, best.degrees, {}};
   }
   MatrixXd jacobian(best.residual.size(), 0);
   if (!trial.noise.outputs.empty()) {

@@ -129,7 +129,7 @@ void OutputLoss::addTo(const VectorXd& residual, const MatrixXd& jacobian, Linea
   }
 }
 
-FoundNoise OutputLoss::standardize(VectorXd& residual, const MatrixXd& jacobian, double scale) const {
+FoundNoise OutputLoss::standardize(VectorXd& residual, MatrixXd& jacobian, double scale) const {
   FoundNoise found;
   found.output = noise_.output;
   found.size_was_inferred = !noise_.factor;
@@ -150,6 +150,8 @@ FoundNoise OutputLoss::standardize(VectorXd& residual, const MatrixXd& jacobian,
     plain -= at.offset * offset_;
   }
   residual(samples_.rows) = at.series.row(0).transpose() / std::sqrt(variance);
+  jacobian(samples_.rows, Eigen::all) =
+      at.series.bottomRows(jacobian.cols()).transpose() / std::sqrt(variance);
   found.factor = noise_.factor ? *noise_.factor : std::sqrt(plain.squaredNorm() / (scale * at.degrees));
   found.effective_samples = countEffective(found.autoregression, plain.size());
   return found;

@@ -49,7 +49,7 @@ class OutputLoss {
 
   /// Makes its rows independent and of unit variance, and says what was found. scale: of the squares, for the
   /// degrees of freedom that parameters take.
-  FoundNoise standardize(Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian, double scale) const;
+  FoundNoise standardize(Eigen::VectorXd& residual, Eigen::MatrixXd& jacobian, double scale) const;
   /// Degrees of freedom that an offset and an autoregression take.
   double countTaken() const;
 

@@ -141,7 +141,10 @@ LinearLoss ResidualLoss::linearize(const VectorXd& residual, const MatrixXd& jac
 
 ResidualLoss::Standardized ResidualLoss::standardize(const VectorXd& residual, const MatrixXd& jacobian,
                                                      double degrees) const {
-  Standardized standardized{scale(residual), degrees, {}};
+  Standardized standardized{scale(residual), jacobian, degrees, {}};
+  if (scale_.size() == residual.size()) {
+    standardized.jacobian = scale_.asDiagonal() * jacobian;
+  }
   const double scale = degrees / static_cast<double>(residual.size());
   for (const OfUnknownSize& output : of_unknown_size_) {
     const VectorXd own = residual(output.rows);
@@ -151,17 +154,21 @@ ResidualLoss::Standardized ResidualLoss::standardize(const VectorXd& residual, c
     found.factor = findOutlierSize(own).size / std::sqrt(scale);
     found.effective_samples = static_cast<double>(own.size());
     standardized.residual(output.rows) = own / found.factor;
+    standardized.jacobian(output.rows, Eigen::all) = jacobian(output.rows, Eigen::all) / found.factor;
     standardized.noise.push_back(std::move(found));
   }
   for (const auto& output : outputs_) {
     VectorXd own = residual;
-    standardized.noise.push_back(output->standardize(own, jacobian, scale));
+    MatrixXd slopes = jacobian;
+    standardized.noise.push_back(output->standardize(own, slopes, scale));
     standardized.residual(output->getRows()) = own(output->getRows());
+    standardized.jacobian(output->getRows(), Eigen::all) = slopes(output->getRows(), Eigen::all);
     standardized.degrees -= output->countTaken();
   }
   for (const Censored& one : censored_) {
     const double own = one.scale * residual[one.row];
     standardized.residual[one.row] = one.side * own > 0.0 ? own : std::numeric_limits<double>::quiet_NaN();
+    standardized.jacobian.row(one.row).setZero();
     standardized.degrees -= one.side * own > 0.0 ? 0.0 : 1.0;
   }
   standardized.degrees = std::max(standardized.degrees, 1.0);

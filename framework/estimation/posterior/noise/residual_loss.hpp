@@ -30,10 +30,11 @@ class ResidualLoss {
   /// true; degrees: of freedom of the whole residual.
   struct Standardized {
     Eigen::VectorXd residual;  ///< k; NaN of censored features, where the response is beyond
+    Eigen::MatrixXd jacobian;  ///< k x u, likewise; 0 of censored features
     double degrees = 0.0;      ///< those that offsets and autoregressions take left out
     std::vector<FoundNoise> noise;
   };
-  /// jacobian (k x u, in half-widths of the bounds): for the standard deviations of offsets.
+  /// jacobian: k x u; in half-widths of the bounds the standard deviations of offsets follow it.
   Standardized standardize(const Eigen::VectorXd& residual, const Eigen::MatrixXd& jacobian,
                            double degrees) const;
 
