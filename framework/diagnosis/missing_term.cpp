@@ -10,6 +10,7 @@
 #include "framework/diagnosis/term_ranking.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/measurement/inference_source.hpp"
 #include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {
@@ -299,6 +300,13 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   } catch (const std::runtime_error&) {
     // the best fit cannot be simulated again: the inference's own statuses say what is wrong
   }
+}
+
+void testModel(const std::string& experiment_file, const std::vector<Recording>& recordings,
+               const std::vector<std::string>& known, JointInference& inferred) {
+  const InferenceSource source(experiment_file);
+  const ExperimentSpec& experiment = source.getExperiment();
+  testModel(experiment, readRecordings(experiment, recordings, parseKnownValues(known)), inferred);
 }
 
 }  // namespace twinmap

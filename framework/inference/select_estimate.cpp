@@ -125,10 +125,7 @@ void addMissing(const InferredMeasurement& inferred, Statuses& statuses) {
     return;
   }
   if (missing->explains) {
-    const auto is_excuse = [](const std::string& status) {
-      return status == "noise_coloured" || status == "sensor_offset" || status == "noise_larger";
-    };
-    statuses.erase(std::remove_if(statuses.begin(), statuses.end(), is_excuse), statuses.end());
+    dropExcuses(statuses);
   }
   statuses.insert(statuses.begin(), "missing_term");
 }
@@ -198,6 +195,13 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
     statuses.emplace_back(toString(TrustStatus::kOk));
   }
   return statuses;
+}
+
+void dropExcuses(std::vector<std::string>& statuses) {
+  const auto is_excuse = [](const std::string& status) {
+    return status == "noise_coloured" || status == "sensor_offset" || status == "noise_larger";
+  };
+  statuses.erase(std::remove_if(statuses.begin(), statuses.end(), is_excuse), statuses.end());
 }
 
 std::string joinStatuses(const std::vector<std::string>& statuses, const char* separator) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/inference/joint/recording_list.hpp"
 #include "framework/inference/joint/trial_reader.hpp"
@@ -47,6 +48,7 @@ py::tuple inferTogether(const std::string& path, const std::vector<Recorded>& re
   {
     const py::gil_scoped_release release;
     inferred = inferrer.infer(list.get());
+    testModel(path, list.get(), texts, inferred);
   }
   return py::make_tuple(makeJointJson(inferred, inferrer.getParameters()),
                         makeJointTable(inferred, inferrer.getParameters()),

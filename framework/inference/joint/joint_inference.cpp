@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
@@ -15,6 +16,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
+#include "framework/inference/select_estimate.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -186,6 +188,25 @@ ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs
   return estimate;
 }
 
+std::vector<std::string> listRecordingFaults(const JointInference& inferred) {
+  std::vector<std::string> listed;
+  for (const Notice fault : {Notice::kOutliers, Notice::kClockFault, Notice::kNoiseLarger,
+                             Notice::kNoiseSmaller, Notice::kNoiseColoured, Notice::kSensorOffset}) {
+    const char* name = getNotice(fault).name;
+    if (std::any_of(inferred.alone.begin(), inferred.alone.end(), [&](const RecordingInference& one) {
+          const std::vector<std::string> statuses = listStatuses(one.inferred);
+          return std::find(statuses.begin(), statuses.end(), name) != statuses.end();
+        })) {
+      listed.emplace_back(name);
+    }
+  }
+  const MissingTerm* missing = inferred.findMissing();
+  if (missing != nullptr && missing->explains && !inferred.disagrees()) {
+    dropExcuses(listed);
+  }
+  return listed;
+}
+
 std::vector<std::string> listStatuses(const JointInference& inferred, Index parameters) {
   if (!inferred.agreement) {
     return {"not_simulated"};
@@ -206,6 +227,8 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
   if (inferred.disagrees()) {
     statuses.emplace_back("trials_disagree");
   }
+  const std::vector<std::string> faults = listRecordingFaults(inferred);
+  statuses.insert(statuses.end(), faults.begin(), faults.end());
   if (!inferred.joint.isReliable()) {
     statuses.emplace_back("unreliable");
   } else {

@@ -59,10 +59,14 @@ struct JointInference {
   bool disagrees() const { return agreement && agreement->p_value < kAgreementLevel; }
 };
 
+/// Names of what one or several recordings have that their files do not state: "outliers", "clock_fault",
+/// "noise_larger", "noise_smaller", "noise_coloured", "sensor_offset". The joint estimate is without it.
+std::vector<std::string> listRecordingFaults(const JointInference& inferred);
+
 /// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
 /// "model_mismatch" (of a recording alone), "missing_term", "at_bounds", "trials_disagree" (below
-/// kAgreementLevel), "unreliable", "multimodal", "uninformative"; {"ok"} where nothing is. Of the first
-/// `parameters`, the machine's.
+/// kAgreementLevel), listRecordingFaults(), "unreliable", "multimodal", "uninformative"; {"ok"} where nothing
+/// is. Of the first `parameters`, the machine's.
 std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
 
 /// The mean of values with standard deviations that scatter more than these say: variance between them by

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/base/json/json_fwd.hpp"
@@ -30,6 +31,12 @@ void addModelTest(const std::optional<ModelTest>& test, const std::vector<Parame
 /// what to do.
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features);
+
+using LabelledMeasurements = std::vector<std::pair<std::string, const InferredMeasurement*>>;
+
+/// What a status of a recording's sensors or clock (listRecordingFaults) says of each recording that has it,
+/// of many of the first four; then what to do.
+std::string explainFaults(const std::string& status, const LabelledMeasurements& recordings);
 
 /// How far the map's estimate is from what the measurement allows, where it is estimator_limited; a line
 /// each, or "".

@@ -167,6 +167,18 @@ Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterS
   return trials;
 }
 
+std::string describeFaults(const JointInference& inferred, const std::vector<std::string>& listed) {
+  LabelledMeasurements recordings;
+  for (const RecordingInference& one : inferred.alone) {
+    recordings.emplace_back(one.label, &one.inferred);
+  }
+  std::string text;
+  for (const std::string& fault : listRecordingFaults(inferred)) {
+    text += isAdvisedElse(fault, listed) ? "" : explainFaults(fault, recordings);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
@@ -191,6 +203,7 @@ std::string makeJointTable(const JointInference& inferred, const std::vector<Par
   text += fillCommands(
       (misfits ? describeMisfits(inferred) : "") + describeAgreement(inferred, parameters, misfits),
       inferred.asked);
+  text += describeFaults(inferred, listed);
   if (isStated(inferred)) {
     text += makeEstimateTable(inferred, parameters);
   } else {

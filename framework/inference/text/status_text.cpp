@@ -435,6 +435,26 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
   return fillCommands(std::move(text), inferred.asked);
 }
 
+std::string explainFaults(const std::string& status, const LabelledMeasurements& recordings) {
+  constexpr std::size_t kShown = 4;
+  std::string text, remedy;
+  std::size_t found = 0;
+  for (const auto& [label, inferred] : recordings) {
+    const Estimate estimate = selectEstimate(*inferred);
+    if (std::count(estimate.statuses.begin(), estimate.statuses.end(), status) == 0 || ++found > kShown) {
+      continue;
+    }
+    const std::string explained = explainStatus(status, *inferred, estimate, {}, {});
+    const std::string happened = dropRemedies(explained), name = "  " + status + ": ";
+    text += name + label + ": " + happened.substr(name.size());
+    remedy = remedy.empty() ? explained.substr(explained.find('\n') + 1) : remedy;
+  }
+  if (found > kShown) {
+    text += fmt::format("  {}: and so {} of the {} recordings\n", status, found, recordings.size());
+  }
+  return text + remedy;
+}
+
 std::string describeAnomaly(const Trust& trust, const std::vector<FeatureInfo>& features) {
   const Anomaly& anomaly = trust.anomaly;
   if (anomaly.first + anomaly.count > static_cast<Index>(features.size())) {

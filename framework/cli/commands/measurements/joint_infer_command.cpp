@@ -12,7 +12,6 @@
 #include "framework/inference/joint/recording_list.hpp"
 #include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/measurement/direct_inference.hpp"
-#include "framework/inference/measurement/inference_source.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap::cli {
@@ -120,10 +119,7 @@ void inferJointly(const InferArguments& arguments) {
   JointInference inferred = inferrer.infer(recordings.get());
   inferred.asked = describeAsked(arguments, recordings.get());
   waiting.describe("look for what the model lacks");
-  const InferenceSource source(findExperimentFile(arguments.run));
-  const ExperimentSpec& experiment = source.getExperiment();
-  testModel(experiment, readRecordings(experiment, recordings.get(), parseKnownValues(arguments.known)),
-            inferred);
+  testModel(findExperimentFile(arguments.run), recordings.get(), arguments.known, inferred);
   waiting.clear();
   if (arguments.json) {
     std::cout << makeJointJson(inferred, inferrer.getParameters()) << "\n";
