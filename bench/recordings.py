@@ -1,8 +1,9 @@
 """How estimates from recordings with faults hold, on mechanisms of different kinds.
 
-Usage: recordings.py TWINMAP [--tests N] [--by-run] [--limits N] [--seed S] [--mechanisms NAME ...] [--faults NAME ...]
+Usage: recordings.py TWINMAP [--tests N] [--by-run | --together N] [--limits N] [--seed S] [--mechanisms NAME ...]
+                     [--faults NAME ...]
 Simulates measurements of random parameters (uniform within the bounds) with noise, disturbs each in one way, and infers them
-from the experiment file, or by a trained run (--by-run). Prints for each mechanism and fault: the share of 95 % intervals that
+from the experiment file, by a trained run (--by-run), or each machine from N recordings jointly (--together N). Prints for each mechanism and fault: the share of 95 % intervals that
 hold the truth, their number, the median of the standard deviations over what the samples left allow (Fisher information at
 the truth, of the parameters with the nuisance, uniform within their bounds; of the first tests), the share of estimates with each status, how many
 called `ok` are more than 6 standard deviations off, how many are errors, and the time of an inference.
@@ -96,6 +97,12 @@ def add_noise(recording, rng, rho, factor=1.0):
         values += factor * noise * e
 
 
+def add_offset(recording, rng, size):
+    """Of so many standard deviations of the noise, of each output."""
+    for values, noise, _ in recording.outputs():
+        values += size * noise * rng.choice([-1, 1])
+
+
 FAULTS = {
     "none": keep,
     "tenth_missing": lose_tenth,
@@ -107,6 +114,7 @@ FAULTS = {
     "noise_unknown": keep,
     "clipped": keep,
     "delay_unknown": keep,
+    "offset": lambda recording, rng: add_offset(recording, rng, 2.0),
     "rho_0.5": lambda recording, rng: add_noise(recording, rng, 0.5),
     "rho_0.9": lambda recording, rng: add_noise(recording, rng, 0.9),
 }
@@ -172,9 +180,9 @@ def list_overrides(values):
     return [f"{name}={value!r}" for name, value in values.items()]
 
 
-def simulate(twinmap, file, spec, fault, rng):
-    """A recording and the parameters and nuisance that it is of."""
-    truth = draw(spec, rng)
+def simulate(twinmap, file, spec, fault, rng, machine=None):
+    """A recording, and the parameters and nuisance that it is of. machine: parameters that are given."""
+    truth = {**draw(spec, rng), **(machine or {})}
     values = [*list_overrides(truth), f"seed={rng.integers(1 << 31)}", f"noise.scale={NOISE_SCALE.get(fault, 1.0)}"]
     noise = [] if fault.startswith("rho") else ["--noise"]
     stamps, features = describe_times(spec, fault, rng) if fault in CLOCKS else (None, None)
@@ -278,6 +286,18 @@ def make_source(twinmap, file, overrides, by_run, folder):
     return write_variant(twinmap, file, overrides, folder)
 
 
+def infer(twinmap, source, texts, together, folder):
+    """Answers as lines of JSON: one a recording, or of so many together."""
+    if together == 1:
+        return call(twinmap, "infer", source, "--follow", text="\n".join(texts), may_fail=True).splitlines()
+    files = []
+    for i, text in enumerate(texts):
+        files.append(folder / f"{i}.csv")
+        files[-1].write_text(text)
+    groups = [files[first : first + together] for first in range(0, len(files), together)]
+    return [call(twinmap, "infer", source, *group, "--joint", "--json") for group in groups]
+
+
 def measure(twinmap, file, fault, arguments, limit):
     """Of each recording the answer, the truth and the limit; s of an inference."""
     rng = np.random.default_rng(arguments.seed)
@@ -286,21 +306,28 @@ def measure(twinmap, file, fault, arguments, limit):
         folder = Path(name)
         variant = write_variant(twinmap, file, describe_variant(spec, fault), folder)
         spec = yaml.safe_load(variant.read_text())
-        simulated = [simulate(twinmap, variant, spec, fault, rng) for _ in range(arguments.tests)]
+        simulated = []
+        for _ in range(arguments.tests):
+            machine = {key: value for key, value in draw(spec, rng).items() if key.startswith("parameters.")}
+            own = machine if arguments.together > 1 else None
+            simulated += [simulate(twinmap, variant, spec, fault, rng, own) for _ in range(arguments.together)]
         overrides = describe_sensors(spec, fault, [recording for recording, _ in simulated])
         for recording, _ in simulated:
             FAULTS[fault](recording, rng)
         limits = [
-            None if fault in CLOCKS or i >= arguments.limits else limit.calc(variant, spec, fault, recording, truth)
+            None
+            if fault in CLOCKS or arguments.together > 1 or i >= arguments.limits
+            else limit.calc(variant, spec, fault, recording, truth)
             for i, (recording, truth) in enumerate(simulated)
         ]
         (folder / "source").mkdir()
         source = make_source(twinmap, variant, overrides, arguments.by_run, folder / "source")
-        texts = "\n".join(recording.to_text() for recording, _ in simulated)
+        texts = [recording.to_text() for recording, _ in simulated]
         start = time.perf_counter()
-        lines = call(twinmap, "infer", source, "--follow", text=texts, may_fail=True).splitlines()
-        seconds = (time.perf_counter() - start) / len(simulated)
-    truths = [{key.split(".")[1]: value for key, value in truth.items()} for _, truth in simulated]
+        lines = infer(twinmap, source, texts, arguments.together, folder)
+        seconds = (time.perf_counter() - start) / arguments.tests
+    of_each = simulated[:: arguments.together]
+    truths = [{key.split(".")[1]: value for key, value in truth.items()} for _, truth in of_each]
     return list(zip(map(json.loads, lines), truths, limits)), seconds
 
 
@@ -314,13 +341,17 @@ class Cell:
             if "error" in estimate:
                 self.errors += 1
                 continue
+            if "parameters" not in estimate:
+                self.statuses.update(estimate["statuses"])
+                continue
             self.statuses.update(estimate["statuses"])
             for name, found in estimate["parameters"].items():
                 if found["mean"] is not None:
                     self.add(estimate["statuses"], found, truth[name], limits[name] if limits else None)
 
     def add(self, statuses, found, truth, limit):
-        self.held.append(any(low <= truth <= high for low, high in found["intervals95"]))
+        intervals = found.get("intervals95") or [(found["lower"], found["upper"])]
+        self.held.append(any(low <= truth <= high for low, high in intervals))
         self.ratios += [found["sd"] / limit] if limit else []
         self.wrong += statuses == ["ok"] and abs(found["mean"] - truth) > 6 * found["sd"]
 
@@ -337,7 +368,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("twinmap")
     parser.add_argument("--tests", type=int, default=40)
-    parser.add_argument("--by-run", action="store_true")
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument("--by-run", action="store_true")
+    way.add_argument("--together", type=int, default=1, help="recordings of a machine, each with nuisance of its own")
     parser.add_argument("--limits", type=int, default=20, help="tests whose limit is computed")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--mechanisms", nargs="+", choices=MECHANISMS, default=list(MECHANISMS))

@@ -31,7 +31,9 @@ ExplainedFit explain(const RecordingsProblem& problem, const MatrixXd& given,
   if (!(fit.posterior.degrees > 0.0)) {
     throw std::runtime_error(fit.posterior.message);
   }
-  fit.test = testResidual(fit.posterior.residual, fit.posterior.degrees, problem.listInfos());
+  const VectorXd residual =
+      problem.hasFaults() ? problem.linearize(fit.posterior.best).residual : fit.posterior.residual;
+  fit.test = testResidual(residual, fit.posterior.degrees, problem.listInfos());
   return fit;
 }
 
@@ -147,6 +149,9 @@ class Diagnoser {
     diagnosis.corrected = fits[diagnosis.found].experiment;
     diagnosis.terms = fits[diagnosis.found].terms;
     average(search, diagnosis);
+    if (!diagnosis.after.isExplained() && diagnosis.found == 0) {
+      countColours(diagnosis);
+    }
     if (!diagnosis.after.isExplained()) {
       diagnosis.remainder =
           findRemainder(diagnosis.corrected, recordings_, diagnosis.after.posterior.best, shared_);
@@ -154,6 +159,20 @@ class Diagnoser {
     // what explains all is not beaten by a force that may be anything
     if (diagnosis.found > 0 && options_.accepted.empty() && !diagnosis.after.isExplained()) {
       diagnosis.process = findBetterProcess(fits.front().experiment, diagnosis);
+    }
+  }
+
+  /// Where no term is found, noise may be what it was found to be of each recording alone.
+  void countColours(Diagnosis& diagnosis) const {
+    const RecordingsProblem problem(diagnosis.corrected, recordings_, NoiseColours::kCounted);
+    if (!problem.hasFaults()) {
+      return;
+    }
+    ExplainedFit fit = explain(problem, diagnosis.after.posterior.best, makeFittedOptions());
+    if (fit.isExplained() && fit.posterior.isReliable()) {
+      diagnosis.after = std::move(fit);
+      diagnosis.is_coloured = true;
+      diagnosis.averaged = mix({diagnosis.after.posterior}, {1.0}, shared_);
     }
   }
 
@@ -235,6 +254,9 @@ const char* Diagnosis::getStatus() const {
   if (isIncomplete()) {
     return getNotice(Notice::kModelIncomplete).name;
   }
+  if (is_coloured) {
+    return getNotice(Notice::kNoiseColoured).name;
+  }
   return getNotice(found > 0 && !after.posterior.isReliable() ? Notice::kUnreliable : Notice::kOk).name;
 }
 
@@ -244,6 +266,17 @@ std::vector<std::string> Diagnosis::listTerms() const {
     names.push_back(term.candidate.term);
   }
   return names;
+}
+
+std::vector<std::string> Diagnosis::listFaults() const {
+  std::vector<std::string> faults = listRecordingFaults(alone);
+  const auto is_tested = [&](const std::string& fault) {
+    return fault == getNotice(Notice::kClockFault).name ||
+           (fault == getNotice(Notice::kSensorOffset).name && alone.size() == 1) ||
+           (fault == getNotice(Notice::kNoiseColoured).name && !is_coloured);
+  };
+  faults.erase(std::remove_if(faults.begin(), faults.end(), is_tested), faults.end());
+  return faults;
 }
 
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,

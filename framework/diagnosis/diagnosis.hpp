@@ -50,6 +50,10 @@ struct Diagnosis {
   /// A process in the place of all terms that were found: where these leave something unexplained and it has
   /// more evidence than they have, as the random force of wind or of a drive's chatter would.
   std::optional<Remainder> process;
+  /// Whether `after` counts the colours that the noise of recordings has, which explain all where no term
+  /// does.
+  bool is_coloured = false;
+  std::vector<RecordingInference> alone{};  ///< each as inference explains it, where it was asked
 
   /// Parameters whose best value before any term is within a hundredth of their bounds' width from a bound;
   /// none where the noise explains the recordings.
@@ -57,12 +61,15 @@ struct Diagnosis {
 
   /// Whether something is left unexplained, or a random force explains more than the terms that were found.
   bool isIncomplete() const { return !after.isExplained() || process; }
-  /// "model_incomplete" where it is; "unreliable" where the terms explain all, but no posterior with them is
-  /// to be believed; else "ok".
+  /// "model_incomplete" where it is; "noise_coloured" where that explains all; "unreliable" where the terms
+  /// explain all, but no posterior with them is to be believed; else "ok".
   const char* getStatus() const;
 
   /// The names of the terms.
   std::vector<std::string> listTerms() const;
+
+  /// Of listRecordingFaults(), those that the diagnosis has taken: no candidate stands for them.
+  std::vector<std::string> listFaults() const;
 };
 
 /// Fits the experiment to the recordings (samplePosterior), tests each candidate by its score (ScoreTest)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/blind_spots.hpp"
 #include "framework/diagnosis/problem/sensor_faults.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
@@ -179,7 +180,7 @@ ModelTest testExplained(const ExperimentSpec& experiment, RecordedFeatures recor
                         const InferredMeasurement& inferred, const KnownFit& known) {
   const SimulatorFit* fit = findFit(inferred);
   if (fit != nullptr) {
-    takeFaults(*fit, SensorFaults::kSizes, 0, recording);
+    takeFaults(*fit, {}, 0, recording);
   }
   ModelTest test = testExplained(experiment, recording, known);
   if (fit != nullptr && fit->hasOffset() && test.missing && test.missing->term.rfind("offset.", 0) == 0) {
@@ -206,17 +207,6 @@ std::pair<RecordedFeatures, VectorXd> leaveClocks(const ExperimentSpec& experime
     next += own + static_cast<Index>(faults);
   }
   return {recordings.select(kept), point};
-}
-
-/// Each with what is known of its sensors.
-RecordedFeatures takeFaults(RecordedFeatures recordings, const JointInference& inferred,
-                            SensorFaults faults) {
-  for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
-    if (const SimulatorFit* fit = findFit(inferred.alone[k].inferred); fit != nullptr && fit->isPlausible()) {
-      takeFaults(*fit, faults, k, recordings);
-    }
-  }
-  return recordings;
 }
 
 /// Whether the model, and that of each trial, is a system of bodies that is simulated in time.
@@ -287,10 +277,9 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   const std::vector<std::string> statuses =
       listStatuses(inferred, static_cast<Index>(experiment.model.parameters.size()));
   const bool misfits = isMismatch(statuses) || inferred.disagrees();
-  const auto [kept, point] = leaveClocks(
-      experiment,
-      takeFaults(recordings, inferred, misfits ? SensorFaults::kSizes : SensorFaults::kSizesAndOffsets),
-      inferred);
+  RecordedFeatures explained = recordings;
+  takeFaults(inferred.alone, {!misfits}, explained);
+  const auto [kept, point] = leaveClocks(experiment, explained, inferred);
   if (kept.features.empty()) {
     return;
   }
@@ -304,9 +293,13 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
 
 void testModel(const std::string& experiment_file, const std::vector<Recording>& recordings,
                const std::vector<std::string>& known, JointInference& inferred) {
-  const InferenceSource source(experiment_file);
-  const ExperimentSpec& experiment = source.getExperiment();
-  testModel(experiment, readRecordings(experiment, recordings, parseKnownValues(known)), inferred);
+  try {
+    const InferenceSource source(experiment_file);
+    const ExperimentSpec& experiment = source.getExperiment();
+    testModel(experiment, readRecordings(experiment, recordings, parseKnownValues(known)), inferred);
+  } catch (const ExperimentError&) {
+    // trials that cannot be combined, as of modes in two of them
+  }
 }
 
 }  // namespace twinmap

@@ -1,8 +1,10 @@
 #include <pybind11/stl.h>
 
 #include "framework/base/files/atomic_file.hpp"
+#include "framework/diagnosis/problem/sensor_faults.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
+#include "framework/inference/joint/recording_list.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/measured_columns.hpp"
 #include "framework/python/python_map.hpp"
@@ -14,34 +16,27 @@ namespace {
 /// Name and columns; without these the name is that of a file.
 using Recorded = std::pair<std::string, std::optional<NamedVectors>>;
 
-RecordedFeatures readTables(const MeasurementReader& reader, const std::vector<Recorded>& recordings,
-                            const std::vector<double>& starts, const Eigen::VectorXd& known) {
-  std::vector<std::optional<double>> from(starts.begin(), starts.end());
-  if (from.empty()) {
-    from.emplace_back();
+std::vector<RecordedTable> readTables(const std::vector<Recorded>& recordings,
+                                      const std::vector<std::string>& columns) {
+  std::vector<RecordedTable> tables;
+  for (const auto& [name, values] : recordings) {
+    tables.push_back({"", name, readOrMakeTable(name, values, columns)});
   }
-  RecordedFeatures all{reader.getLayout(), {}, known};
-  for (const auto& [name, columns] : recordings) {
-    const Table table = readOrMakeTable(name, columns, reader.listColumns());
-    for (const std::optional<double>& start : from) {
-      append(readRecording(reader, table, start, known), all);
-    }
-  }
-  return all;
+  return tables;
 }
 
-/// JSON and text, as `twinmap diagnose` prints them, and the corrected experiment. page: file for the page,
-/// or
-/// "".
+/// JSON and text, as `twinmap diagnose` prints them, and the corrected experiment. page: its file, or "".
 py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& recordings,
                              const std::vector<double>& starts, const Known& known,
                              const std::vector<std::string>& accepted, const std::string& page) {
   const MeasurementReader& reader = map.getReader();
-  const RecordedFeatures read =
-      readTables(reader, recordings, starts, collectKnown(reader.getExperiment().model.inputs, known));
+  const ExperimentSpec& experiment = reader.getExperiment();
+  const std::vector<KnownValue> values = listKnown(known);
+  const JointInferrer inferrer(experiment, values);
+  const RecordingList list(inferrer, readTables(recordings, reader.listColumns()), {starts, {}});
   DiagnosisOptions options;
   options.accepted = accepted;
-  options.posterior = makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
+  options.posterior = makePosteriorOptions(experiment, SimulatorPosteriorOptions{}.draws);
   std::vector<std::string> sources;
   std::string names;
   for (const Recorded& one : recordings) {
@@ -51,10 +46,12 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
   Diagnosis diagnosis;
   {
     const py::gil_scoped_release release;
-    diagnosis = diagnose(reader.getExperiment(), read, options);
+    DiagnosedRecordings read = explainSensors(inferrer, experiment, list.get(), values);
+    diagnosis = diagnose(experiment, read.features, options);
+    diagnosis.alone = std::move(read.alone);
     if (!page.empty()) {
-      writeTextFile(
-          page, makeDiagnosisPage(diagnosis, reader.getExperiment(), read, nameRecordings(sources, starts)));
+      writeTextFile(page,
+                    makeDiagnosisPage(diagnosis, experiment, read.features, nameRecordings(sources, starts)));
     }
   }
   return py::make_tuple(makeDiagnosisJson(diagnosis, names), makeDiagnosisTable(diagnosis, names),
@@ -64,9 +61,7 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
 /// JSON and text, as `twinmap diagnose` without recordings prints them.
 py::tuple findBlindSpots(const PythonMap& map, const Known& known) {
   const MeasurementReader& reader = map.getReader();
-  RecordedFeatures recordings = readRecordings(reader, {}, {}, {});
-  recordings.known = collectKnown(reader.getExperiment().model.inputs, known);
-  recordings.features = {Eigen::VectorXd::Zero(reader.getExtractor().getFeatureCount())};
+  const RecordedFeatures recordings = makeEmptyRecordings(reader.getExperiment(), listKnown(known));
   std::vector<BlindSpot> spots;
   {
     const py::gil_scoped_release release;

@@ -44,13 +44,17 @@ inline Table readOrMakeTable(const std::string& name, const std::optional<NamedV
 
 using Known = std::vector<std::pair<std::string, double>>;
 
-/// Values of the known inputs, in their order.
-inline Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs, const Known& known) {
+inline std::vector<KnownValue> listKnown(const Known& known) {
   std::vector<KnownValue> values;
   for (const auto& [name, value] : known) {
     values.push_back({name, value});
   }
-  return twinmap::collectKnown(inputs, values);
+  return values;
+}
+
+/// Values of the known inputs, in their order.
+inline Eigen::VectorXd collectKnown(const std::vector<ParameterSpec>& inputs, const Known& known) {
+  return twinmap::collectKnown(inputs, listKnown(known));
 }
 
 }  // namespace twinmap::python

@@ -16,6 +16,10 @@ struct FeatureInfo {
   double time = 0.0;         ///< s; of a feature that has no time of its own 0
   std::string excitation{};  ///< the signal, of a part of a frequency response; else empty
   double frequency = 0.0;    ///< Hz, of its line
+  bool is_at_start = false;  ///< whether its time is 0, and not that of a feature without one
+
+  /// Whether it is one output at one time.
+  bool isSample() const { return output >= 0 && (time > 0.0 || is_at_start); }
 };
 
 /// features = matrix * response; one row a feature.

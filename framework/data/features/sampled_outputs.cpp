@@ -24,6 +24,7 @@ std::shared_ptr<const FeatureBlock> makeSamplesBlock(const SamplesFeatureSpec& s
           1.0;
       infos.push_back(
           {makeFeatureName(name.text, time), layout.output_units[output], static_cast<int>(output), time});
+      infos.back().is_at_start = time == 0.0;
     }
   }
   return std::make_shared<LinearBlock>(std::move(infos), matrix);

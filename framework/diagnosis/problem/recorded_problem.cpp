@@ -109,6 +109,17 @@ PosteriorProblem makeRecordedProblem(const Simulators& simulators, const std::ve
   return problem;
 }
 
+/// Without outputs of which nothing else is left.
+void dropColours(NoiseHypothesis& noise) {
+  for (OutputNoise& output : noise.outputs) {
+    output.colours.clear();
+  }
+  noise.outputs.erase(
+      std::remove_if(noise.outputs.begin(), noise.outputs.end(),
+                     [](const OutputNoise& one) { return one.factor == 1.0 && !one.has_offset; }),
+      noise.outputs.end());
+}
+
 /// Of one recording after the other.
 std::vector<std::size_t> countOutputs(const RecordedFeatures& recordings) {
   std::vector<std::size_t> counts;
@@ -254,20 +265,6 @@ RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vect
   return recordings;
 }
 
-RecordedFeatures readTrials(const ExperimentSpec& combined, const std::vector<TrialFile>& files,
-                            const std::vector<double>& starts, const std::vector<KnownValue>& known) {
-  RecordedFeatures recordings = setUpTrials(combined, known);
-  for (const TrialFile& one : files) {
-    const std::size_t trial = findTrial(combined, one.trial);
-    const MeasurementReader reader(combined.trials[trial].experiment);
-    const Table table = readTable(one.file, reader.listColumns(), MissingCells::kKeep);
-    for (const std::optional<double>& start : listWindows(starts)) {
-      appendOfTrial(readRecording(reader, table, start, recordings.setups[trial].known), trial, recordings);
-    }
-  }
-  return recordings;
-}
-
 RecordedFeatures readRecordings(const ExperimentSpec& combined, const std::vector<Recording>& recordings,
                                 const std::vector<KnownValue>& known) {
   if (combined.trials.empty()) {
@@ -321,16 +318,25 @@ SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFe
   return single;
 }
 
-RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
+RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                                     NoiseColours colours)
     : outputs_(countOutputs(recordings)) {
   const std::vector<std::size_t> assigned = assignSimulators(experiment, recordings, simulators_);
   problem_ = makeRecordedProblem(simulators_, assigned, experiment, recordings);
   for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
     faults_.push_back(recordings.getNoise(k));
+    if (colours == NoiseColours::kIgnored) {
+      dropColours(faults_.back());
+    }
     if (!faults_.back().isPlain()) {
       problem_.trials[k].noise = faults_.back();
     }
   }
+}
+
+bool RecordingsProblem::hasFaults() const {
+  return std::any_of(faults_.begin(), faults_.end(),
+                     [](const NoiseHypothesis& noise) { return !noise.isPlain(); });
 }
 
 std::vector<FeatureInfo> RecordingsProblem::listInfos() const {

@@ -75,10 +75,6 @@ RecordedFeatures readRecording(const MeasurementReader& reader, const Table& tab
 RecordedFeatures readRecordings(const MeasurementReader& reader, const std::vector<std::string>& files,
                                 const std::vector<double>& starts, const std::vector<KnownValue>& known);
 
-/// The same of trials: each file is of one of them. Throws ExperimentError for an unknown trial.
-RecordedFeatures readTrials(const ExperimentSpec& combined, const std::vector<TrialFile>& files,
-                            const std::vector<double>& starts, const std::vector<KnownValue>& known);
-
 /// What was inferred jointly, as inference reads it. combined: its trials, if it has any. Throws as above.
 RecordedFeatures readRecordings(const ExperimentSpec& combined, const std::vector<Recording>& recordings,
                                 const std::vector<KnownValue>& known);
@@ -110,18 +106,25 @@ struct RecordingFit {
   double chi_square = 0.0;
 };
 
+/// Whether the colour that was found of a recording's noise counts, or may be what the model lacks.
+enum class NoiseColours { kIgnored, kCounted };
+
 /// An experiment that is to explain recordings: the parameters are those of the machine, then those that each
 /// recording leaves unknown besides. For one thread.
 class RecordingsProblem {
  public:
   /// `recordings` must outlive the object. Throws ExperimentError where a feature has no noise.
-  RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings);
+  RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                    NoiseColours colours = NoiseColours::kIgnored);
   RecordingsProblem(const RecordingsProblem&) = delete;
   RecordingsProblem& operator=(const RecordingsProblem&) = delete;
 
   const std::vector<ParameterSpec>& getUnknown() const { return problem_.unknown; }
   const PosteriorProblem& get() const { return problem_; }
   const SimulatorRefiner& getSimulator() const { return *simulators_.front(); }
+
+  /// Whether sensors of some recording have faults that count.
+  bool hasFaults() const;
 
   /// Of all residuals, for testResidual(): each recording's outputs have numbers of their own.
   std::vector<FeatureInfo> listInfos() const;

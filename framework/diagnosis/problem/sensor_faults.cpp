@@ -2,24 +2,61 @@
 
 #include <limits>
 
-namespace twinmap {
+#include "framework/inference/select_estimate.hpp"
 
-void takeFaults(const SimulatorFit& fit, SensorFaults faults, std::size_t recording,
-                RecordedFeatures& recordings) {
-  Eigen::VectorXd& features = recordings.features[recording];
+namespace twinmap {
+namespace {
+
+void leaveOutliers(const SimulatorFit& fit, Eigen::VectorXd& features) {
   for (const Eigen::Index feature : fit.outlier_features) {
     if (feature < features.size()) {
       features[feature] = std::numeric_limits<double>::quiet_NaN();
     }
   }
+}
+
+}  // namespace
+
+void takeFaults(const SimulatorFit& fit, const TakenFaults& taken, std::size_t recording,
+                RecordedFeatures& recordings) {
+  leaveOutliers(fit, recordings.features[recording]);
   recordings.noise.resize(recordings.features.size());
   for (const NoiseReport& report : fit.noise) {
     const FoundNoise& found = report.found;
-    const bool has_offset = found.has_offset && faults == SensorFaults::kSizesAndOffsets;
-    if (found.size_was_inferred || has_offset) {
-      recordings.noise[recording].outputs.push_back({found.output, found.factor, has_offset});
+    if (!report.isStated() && !taken.unstated_sizes) {
+      continue;
+    }
+    OutputNoise noise{found.output, found.factor, found.has_offset && taken.offsets};
+    if (found.autoregression.size() > 0) {
+      noise.colours.push_back({found.autoregression});
+    }
+    recordings.noise[recording].outputs.push_back(std::move(noise));
+  }
+}
+
+void takeFaults(const std::vector<RecordingInference>& alone, const TakenFaults& taken,
+                RecordedFeatures& recordings) {
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    const SimulatorFit* fit = findFit(alone[k].inferred);
+    if (fit != nullptr && fit->isPlausible()) {
+      takeFaults(*fit, taken, k, recordings);
+    } else if (fit != nullptr) {
+      leaveOutliers(*fit, recordings.features[k]);
     }
   }
+}
+
+DiagnosedRecordings explainSensors(const JointInferrer& inferrer, const ExperimentSpec& experiment,
+                                   const std::vector<Recording>& recordings,
+                                   const std::vector<KnownValue>& known) {
+  DiagnosedRecordings explained{readRecordings(experiment, recordings, known), {}};
+  std::vector<ExplainedRecording> alone = inferrer.explainAlone(recordings);
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    explained.alone.push_back(
+        {recordings[k].label, std::move(alone[k].inferred), std::move(alone[k].posterior)});
+  }
+  takeFaults(explained.alone, {alone.size() > 1, false}, explained.features);
+  return explained;
 }
 
 }  // namespace twinmap

@@ -4,14 +4,32 @@
 
 namespace twinmap {
 
-/// Which of a sensor's faults a recording is taken with: a colour is not among them, as little terms of a
-/// model look alike.
-enum class SensorFaults { kSizes, kSizesAndOffsets };
+/// What of a sensor's noise is taken from inference, and what is left to be found by a test of the model.
+struct TakenFaults {
+  bool offsets = false;        ///< else they compete with other terms
+  bool unstated_sizes = true;  ///< else those that the experiment does not state are not taken
+};
 
-/// Takes a recording as inference explains it alone: samples that are no noise are left out, and sizes of
-/// noise that were found stand for those stated or unknown; offsets are integrated out, if they are asked
-/// for.
-void takeFaults(const SimulatorFit& fit, SensorFaults faults, std::size_t recording,
+/// Takes a recording as inference explains it alone: samples that are no noise are left out; sizes of noise
+/// that were found stand for those stated, offsets are integrated out, colours are kept for a problem that
+/// counts them.
+void takeFaults(const SimulatorFit& fit, const TakenFaults& taken, std::size_t recording,
                 RecordedFeatures& recordings);
+
+/// The same of those among several that it explains; of the others only samples are left out.
+void takeFaults(const std::vector<RecordingInference>& alone, const TakenFaults& taken,
+                RecordedFeatures& recordings);
+
+/// Recordings as inference explains each alone, for a diagnosis.
+struct DiagnosedRecordings {
+  RecordedFeatures features;
+  std::vector<RecordingInference> alone;
+};
+
+/// An offset of one recording alone competes with other terms; of several each has its own. Throws as
+/// readRecordings().
+DiagnosedRecordings explainSensors(const JointInferrer& inferrer, const ExperimentSpec& experiment,
+                                   const std::vector<Recording>& recordings,
+                                   const std::vector<KnownValue>& known);
 
 }  // namespace twinmap

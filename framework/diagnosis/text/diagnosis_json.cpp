@@ -3,6 +3,7 @@
 #include "framework/base/json/json.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
+#include "framework/inference/select_estimate.hpp"
 
 namespace twinmap {
 
@@ -144,6 +145,9 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
   }
   if (hasUnknownNoise(diagnosis.corrected.noise)) {
     json["noise"] = makeNoiseJson(diagnosis);
+  }
+  for (const RecordingInference& one : diagnosis.alone) {
+    json["recordings"].push_back({{"label", one.label}, {"statuses", listStatuses(one.inferred)}});
   }
   if (diagnosis.remainder) {
     json["remainder"] = makeRemainderJson(*diagnosis.remainder, parameters);

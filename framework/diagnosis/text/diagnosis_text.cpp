@@ -9,6 +9,7 @@
 #include "framework/base/text/text_tables.hpp"
 #include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 
@@ -217,6 +218,13 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
   for (const std::string& line : {describeNoise(diagnosis), describeBounds(diagnosis)}) {
     text += line.empty() ? "" : line + "\n";
   }
+  LabelledMeasurements recordings;
+  for (const RecordingInference& one : diagnosis.alone) {
+    recordings.emplace_back(one.label, &one.inferred);
+  }
+  for (const std::string& fault : diagnosis.listFaults()) {
+    text += explainFaults(fault, recordings);
+  }
   text +=
       diagnosis.process ? makeProcessText(describeProcess(diagnosis), *diagnosis.process, parameters) : "";
   for (std::size_t i = 0; i < diagnosis.steps.size(); ++i) {
@@ -225,8 +233,11 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
               alignRows(listTermRows(diagnosis.steps[i], parameters), 1, "    ");
     }
   }
-  if (diagnosis.found > 0) {
-    text += fmt::format("With {}: {}\n", diagnosis.terms.size() > 1 ? "these terms" : "this term",
+  if (diagnosis.found > 0 || diagnosis.is_coloured) {
+    text += fmt::format("With {}: {}\n",
+                        diagnosis.is_coloured        ? "coloured noise"
+                        : diagnosis.terms.size() > 1 ? "these terms"
+                                                     : "this term",
                         describeFit(diagnosis.after));
     if (!diagnosis.after.posterior.isReliable()) {
       text += fmt::format("  No estimate: {}.\n", diagnosis.after.posterior.message);

@@ -7,6 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
@@ -101,6 +102,18 @@ MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<Recording
   return given;
 }
 
+/// Of the unknown parameters, the sizes of faults of clocks, whose bounds are those of a search.
+std::set<Index> listClockSizes(const PosteriorProblem& problem,
+                               const std::vector<ExplainedRecording>& alone) {
+  std::set<Index> sizes;
+  for (std::size_t k = 0; k < alone.size(); ++k) {
+    const std::vector<Index>& unknown = problem.trials[k].unknown;
+    sizes.insert(unknown.end() - static_cast<std::ptrdiff_t>(alone[k].inferred.clock_faults.size()),
+                 unknown.end());
+  }
+  return sizes;
+}
+
 std::vector<std::size_t> listReliable(const std::vector<RecordingInference>& alone) {
   std::vector<std::size_t> reliable;
   for (std::size_t k = 0; k < alone.size(); ++k) {
@@ -156,6 +169,14 @@ std::vector<ScatterEstimate> combineRecordings(const std::vector<RecordingInfere
   return combined;
 }
 
+std::vector<TrialExperiment> readTrials(const YamlNode& root) {
+  std::vector<TrialExperiment> trials;
+  for (const Trial& trial : expandTrials(root)) {
+    trials.push_back({trial.name, followNoise(readExperimentWithSignals(trial.tree))});
+  }
+  return trials;
+}
+
 void requireSameParameters(const std::vector<ParameterSpec>& parameters,
                            const std::vector<ParameterSpec>& others) {
   const bool same =
@@ -188,21 +209,17 @@ ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs
   return estimate;
 }
 
-std::vector<std::string> listRecordingFaults(const JointInference& inferred) {
+std::vector<std::string> listRecordingFaults(const std::vector<RecordingInference>& alone) {
   std::vector<std::string> listed;
   for (const Notice fault : {Notice::kOutliers, Notice::kClockFault, Notice::kNoiseLarger,
                              Notice::kNoiseSmaller, Notice::kNoiseColoured, Notice::kSensorOffset}) {
     const char* name = getNotice(fault).name;
-    if (std::any_of(inferred.alone.begin(), inferred.alone.end(), [&](const RecordingInference& one) {
+    if (std::any_of(alone.begin(), alone.end(), [&](const RecordingInference& one) {
           const std::vector<std::string> statuses = listStatuses(one.inferred);
           return std::find(statuses.begin(), statuses.end(), name) != statuses.end();
         })) {
       listed.emplace_back(name);
     }
-  }
-  const MissingTerm* missing = inferred.findMissing();
-  if (missing != nullptr && missing->explains && !inferred.disagrees()) {
-    dropExcuses(listed);
   }
   return listed;
 }
@@ -227,7 +244,11 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
   if (inferred.disagrees()) {
     statuses.emplace_back("trials_disagree");
   }
-  const std::vector<std::string> faults = listRecordingFaults(inferred);
+  std::vector<std::string> faults = listRecordingFaults(inferred.alone);
+  const MissingTerm* missing = inferred.findMissing();
+  if (missing != nullptr && missing->explains && !inferred.disagrees()) {
+    dropExcuses(faults);
+  }
   statuses.insert(statuses.end(), faults.begin(), faults.end());
   if (!inferred.joint.isReliable()) {
     statuses.emplace_back("unreliable");
@@ -238,16 +259,25 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
 }
 
 JointInferrer::JointInferrer(const YamlNode& root, const std::vector<std::string>& known,
+                             std::optional<int> draws)
+    : JointInferrer(readTrials(root), parseKnownValues(known), draws) {}
+
+JointInferrer::JointInferrer(const ExperimentSpec& experiment, const std::vector<KnownValue>& known,
+                             std::optional<int> draws)
+    : JointInferrer(
+          experiment.trials.empty() ? std::vector<TrialExperiment>{{"", experiment}} : experiment.trials,
+          known, draws) {}
+
+JointInferrer::JointInferrer(std::vector<TrialExperiment> trials, const std::vector<KnownValue>& known,
                              std::optional<int> draws) {
-  for (const Trial& trial : expandTrials(root)) {
-    auto reader =
-        std::make_shared<const MeasurementReader>(followNoise(readExperimentWithSignals(trial.tree)));
+  for (TrialExperiment& trial : trials) {
+    auto reader = std::make_shared<const MeasurementReader>(std::move(trial.experiment));
     const ExperimentSpec& experiment = reader->getExperiment();
     const ResponseLayout& layout = reader->getLayout();
     auto simulator = std::make_unique<const SimulatorRefiner>(
         experiment, layout, shareAmongThreads(makeSimulator(experiment.model, layout.times, layout.modes)));
     simulator->requireNoise();
-    const VectorXd inputs = collectKnown(experiment.model.inputs, parseKnownValues(known));
+    const VectorXd inputs = collectKnown(experiment.model.inputs, known);
     members_.push_back({trial.name, std::move(reader), std::move(simulator), inputs});
     requireSameParameters(getParameters(), members_.back().reader->getExperiment().model.parameters);
   }
@@ -362,8 +392,11 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   if (!(inferred.joint.degrees > 0.0)) {
     return inferred;
   }
+  const std::set<Index> clocks = listClockSizes(problem, alone);
   for (const Index i : inferred.joint.beyond) {
-    inferred.beyond.push_back(problem.unknown[static_cast<std::size_t>(i)].name.text);
+    if (clocks.count(i) == 0) {
+      inferred.beyond.push_back(problem.unknown[static_cast<std::size_t>(i)].name.text);
+    }
   }
   std::vector<double> separate;
   for (const RecordingInference& one : inferred.alone) {

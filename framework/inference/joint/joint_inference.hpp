@@ -61,7 +61,7 @@ struct JointInference {
 
 /// Names of what one or several recordings have that their files do not state: "outliers", "clock_fault",
 /// "noise_larger", "noise_smaller", "noise_coloured", "sensor_offset". The joint estimate is without it.
-std::vector<std::string> listRecordingFaults(const JointInference& inferred);
+std::vector<std::string> listRecordingFaults(const std::vector<RecordingInference>& alone);
 
 /// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
 /// "model_mismatch" (of a recording alone), "missing_term", "at_bounds", "trials_disagree" (below
@@ -81,6 +81,9 @@ class JointInferrer {
   /// root: the experiment's tree, with trials or without; draws: of a round; none: as many as suit the
   /// number of parameters.
   JointInferrer(const YamlNode& root, const std::vector<std::string>& known, std::optional<int> draws = {});
+  /// experiment: as InferenceSource has it.
+  JointInferrer(const ExperimentSpec& experiment, const std::vector<KnownValue>& known,
+                std::optional<int> draws = {});
 
   /// The machine's, the same in all trials.
   const std::vector<ParameterSpec>& getParameters() const;
@@ -93,7 +96,13 @@ class JointInferrer {
   /// of each recording and joint draw.
   JointInference infer(const std::vector<Recording>& recordings) const;
 
+  /// Each alone (explainRecording).
+  std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings) const;
+
  private:
+  JointInferrer(std::vector<TrialExperiment> trials, const std::vector<KnownValue>& known,
+                std::optional<int> draws);
+
   struct Member {
     std::string name;
     std::shared_ptr<const MeasurementReader> reader;
@@ -103,7 +112,6 @@ class JointInferrer {
 
   const Member& find(const std::string& trial) const;
   ExplainedRecording explain(const Recording& recording) const;
-  std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings) const;
   /// Of recordings that the model does not explain, or that disagree: of others it would take long.
   static void nameNoise(std::vector<ExplainedRecording>& alone, JointInference& inferred);
   /// Each with the faults that explain it alone. The recordings must outlive it.

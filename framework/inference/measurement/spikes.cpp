@@ -91,7 +91,7 @@ SpikedFeatures findSpikedFeatures(const VectorXd& measured, const ResponseLayout
   for (const SpikedSample& spike : findSpikes(measured, layout)) {
     for (std::size_t i = 0; i < infos.size(); ++i) {
       const FeatureInfo& info = infos[i];
-      if (info.output < 0 || info.time <= 0.0) {
+      if (!info.isSample()) {
         continue;
       }
       const Index time = spike.row - layout.getRow(info.output, 0);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "framework/base/json/json.hpp"
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/escape.hpp"
@@ -173,8 +175,10 @@ std::string describeFaults(const JointInference& inferred, const std::vector<std
     recordings.emplace_back(one.label, &one.inferred);
   }
   std::string text;
-  for (const std::string& fault : listRecordingFaults(inferred)) {
-    text += isAdvisedElse(fault, listed) ? "" : explainFaults(fault, recordings);
+  for (const std::string& fault : listRecordingFaults(inferred.alone)) {
+    const bool is_said =
+        std::find(listed.begin(), listed.end(), fault) != listed.end() && !isAdvisedElse(fault, listed);
+    text += is_said ? explainFaults(fault, recordings) : "";
   }
   return text;
 }

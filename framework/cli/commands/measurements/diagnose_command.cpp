@@ -5,9 +5,13 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
+#include "framework/diagnosis/problem/sensor_faults.hpp"
 #include "framework/diagnosis/text/corrected_file.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/inference/joint/recording_list.hpp"
+#include "framework/inference/joint/trial_reader.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/models/model_remarks.hpp"
@@ -37,30 +41,32 @@ void requireMeasurements(const DiagnoseArguments& arguments) {
   }
 }
 
-/// What --trial gives.
-RecordedFeatures readOfTrials(const DiagnoseArguments& arguments, const ExperimentSpec& experiment) {
-  if (experiment.trials.empty()) {
-    throw ExperimentError("--trial " + arguments.trials.front() +
-                          ": the experiment has no trials; give the file alone");
-  }
-  if (!arguments.page.empty()) {
-    throw ExperimentError("--page draws recordings of one trial: " + describeOwnFile() +
-                          ", and diagnose that with its recordings and --page");
-  }
-  return readTrials(experiment, parseTrialFiles(arguments.trials), arguments.starts,
-                    parseKnownValues(arguments.known));
-}
-
-RecordedFeatures readArguments(const DiagnoseArguments& arguments, const MeasurementReader& reader) {
-  const ExperimentSpec& experiment = reader.getExperiment();
+void requireTrials(const DiagnoseArguments& arguments, const ExperimentSpec& experiment) {
   if (!experiment.trials.empty() && !arguments.files.empty()) {
     throw ExperimentError(arguments.files.front() +
                           ": which trial does it record? Give --trial NAME=" + arguments.files.front());
   }
-  if (!arguments.trials.empty()) {
-    return readOfTrials(arguments, experiment);
+  if (!arguments.trials.empty() && experiment.trials.empty()) {
+    throw ExperimentError("--trial " + arguments.trials.front() +
+                          ": the experiment has no trials; give the file alone");
   }
-  return readRecordings(reader, arguments.files, arguments.starts, parseKnownValues(arguments.known));
+  if (!arguments.trials.empty() && !arguments.page.empty()) {
+    throw ExperimentError("--page draws recordings of one trial: " + describeOwnFile() +
+                          ", and diagnose that with its recordings and --page");
+  }
+}
+
+std::vector<RecordedTable> readTables(const DiagnoseArguments& arguments, const JointInferrer& inferrer) {
+  std::vector<TrialFile> files = parseTrialFiles(arguments.trials);
+  for (const std::string& file : arguments.files) {
+    files.push_back({"", file});
+  }
+  std::vector<RecordedTable> tables;
+  for (const TrialFile& one : files) {
+    const std::vector<std::string> columns = inferrer.getReader(one.trial).listColumns();
+    tables.push_back({one.trial, one.file, readTable(one.file, columns, MissingCells::kKeep)});
+  }
+  return tables;
 }
 
 }  // namespace
@@ -77,12 +83,17 @@ void diagnose(const DiagnoseArguments& arguments) {
     printBlindSpots(arguments, reader.getExperiment(), waiting);
     return;
   }
-  const RecordedFeatures recordings = readArguments(arguments, reader);
   const ExperimentSpec& experiment = reader.getExperiment();
+  requireTrials(arguments, experiment);
+  const std::vector<KnownValue> known = parseKnownValues(arguments.known);
+  const JointInferrer inferrer(experiment, known);
+  const RecordingList list(inferrer, readTables(arguments, inferrer), {arguments.starts, {}});
+  DiagnosedRecordings recordings = explainSensors(inferrer, experiment, list.get(), known);
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
   options.posterior = makePosteriorOptions(experiment, SimulatorPosteriorOptions{}.draws);
-  const Diagnosis diagnosis = twinmap::diagnose(experiment, recordings, options);
+  Diagnosis diagnosis = twinmap::diagnose(experiment, recordings.features, options);
+  diagnosis.alone = std::move(recordings.alone);
   waiting.clear();
   if (!diagnosis.before.isExplained()) {
     for (const std::string& against : listModelRemarks(experiment.model)) {
@@ -96,7 +107,7 @@ void diagnose(const DiagnoseArguments& arguments) {
     writeTextFile(arguments.out, writeCorrected(diagnosis.corrected));
   }
   if (!arguments.page.empty()) {
-    writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, experiment, recordings,
+    writeTextFile(arguments.page, makeDiagnosisPage(diagnosis, experiment, recordings.features,
                                                     nameRecordings(arguments.files, arguments.starts)));
   }
 }

@@ -43,8 +43,7 @@ class Candidates {
       infos_.push_back(fit.model->getExtractor().getInfos()[static_cast<std::size_t>(feature)]);
     }
     for (const FeatureInfo& info : infos_) {
-      if (info.output >= 0 && info.time > 0.0 &&
-          std::find(outputs_.begin(), outputs_.end(), info.output) == outputs_.end()) {
+      if (info.isSample() && std::find(outputs_.begin(), outputs_.end(), info.output) == outputs_.end()) {
         outputs_.push_back(info.output);
       }
     }

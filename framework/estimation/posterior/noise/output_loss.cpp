@@ -72,7 +72,7 @@ OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& win
     const bool is_censored = std::any_of(censored.begin(), censored.end(), [&](const CensoredFeature& one) {
       return one.feature == window.features[i];
     });
-    if (info.output == output && info.time > 0.0 && !is_censored) {
+    if (info.output == output && info.isSample() && !is_censored) {
       samples.rows.push_back(static_cast<Index>(i));
     }
   }

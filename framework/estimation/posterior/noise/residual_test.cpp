@@ -30,7 +30,7 @@ std::map<int, std::vector<double>> collectSamples(const VectorXd& residual,
                                                   const std::vector<FeatureInfo>& infos) {
   std::map<int, std::vector<double>> samples;
   for (std::size_t i = 0; i < infos.size(); ++i) {
-    if (infos[i].output >= 0 && infos[i].time > 0.0) {
+    if (infos[i].isSample()) {
       samples[infos[i].output].push_back(residual[static_cast<Index>(i)]);
     }
   }
