@@ -175,18 +175,31 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
   return test;
 }
 
-/// A term competes with an offset, which is one of them.
-ModelTest testExplained(const ExperimentSpec& experiment, RecordedFeatures recording,
-                        const InferredMeasurement& inferred, const KnownFit& known) {
-  const SimulatorFit* fit = findFit(inferred);
-  if (fit != nullptr) {
-    takeFaults(*fit, {}, 0, recording);
-  }
-  ModelTest test = testExplained(experiment, recording, known);
-  if (fit != nullptr && fit->hasOffset() && test.missing && test.missing->term.rfind("offset.", 0) == 0) {
-    test.missing.reset();  // the same in other words
+/// Of recordings with offsets: beside these, or in their place where noise as it is stated remains with a
+/// term that is another than an offset. without: where they are not integrated out.
+ModelTest testWithOffsets(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                          const RecordedFeatures& without, const KnownFit& known) {
+  ModelTest test = testExplained(experiment, recordings, known);
+  ModelTest instead = testExplained(experiment, without, known);
+  const bool replaces =
+      instead.missing && instead.missing->explains && instead.missing->term.rfind("offset.", 0) != 0;
+  if (replaces) {
+    test.missing = std::move(instead.missing);
   }
   return test;
+}
+
+ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures& recording,
+                        const InferredMeasurement& inferred, const KnownFit& known) {
+  const SimulatorFit* fit = findFit(inferred);
+  RecordedFeatures explained = recording, without = recording;
+  if (fit == nullptr) {
+    return testExplained(experiment, recording, known);
+  }
+  takeFaults(*fit, {true}, 0, explained);
+  takeFaults(*fit, {}, 0, without);
+  return fit->hasOffset() ? testWithOffsets(experiment, explained, without, known)
+                          : testExplained(experiment, explained, known);
 }
 
 /// The recordings whose clocks have no fault, and the point without what is of the others alone.
@@ -277,15 +290,24 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   const std::vector<std::string> statuses =
       listStatuses(inferred, static_cast<Index>(experiment.model.parameters.size()));
   const bool misfits = isMismatch(statuses) || inferred.disagrees();
-  RecordedFeatures explained = recordings;
-  takeFaults(inferred.alone, {!misfits}, explained);
+  RecordedFeatures without = recordings, explained = recordings;
+  takeFaults(inferred.alone, {}, without);
+  takeFaults(inferred.alone, {true}, explained);
   const auto [kept, point] = leaveClocks(experiment, explained, inferred);
+  const RecordedFeatures kept_without = leaveClocks(experiment, without, inferred).first;
   if (kept.features.empty()) {
     return;
   }
+  const bool has_offsets =
+      std::any_of(inferred.alone.begin(), inferred.alone.end(), [](const RecordingInference& one) {
+        const SimulatorFit* fit = findFit(one.inferred);
+        return fit != nullptr && fit->hasOffset();
+      });
+  const KnownFit known{point, joint.chi_square, joint.degrees};
   try {
-    inferred.model_test = misfits ? ModelTest{explainMisfit(experiment, kept, point)}
-                                  : testExplained(experiment, kept, {point, joint.chi_square, joint.degrees});
+    inferred.model_test = misfits       ? ModelTest{explainMisfit(experiment, kept_without, point)}
+                          : has_offsets ? testWithOffsets(experiment, kept, kept_without, known)
+                                        : testExplained(experiment, kept, known);
   } catch (const std::runtime_error&) {
     // the best fit cannot be simulated again: the inference's own statuses say what is wrong
   }

@@ -84,7 +84,9 @@ SampledMeasurement SimulatorSampler::sampleAsStated(const VectorXd& features, co
 SampledMeasurement SimulatorSampler::samplePosterior(const VectorXd& features, const VectorXd& known,
                                                      const NoiseHypothesis& stated, const MatrixXd& given,
                                                      const SimulatorPosteriorOptions& options) const {
-  SampledMeasurement sampled = sampleAsStated(features, known, stated, given, options);
+  SimulatorPosteriorOptions sparing = options;
+  sparing.spares_misfit = readsOutputs();
+  SampledMeasurement sampled = sampleAsStated(features, known, stated, given, sparing);
   const SimulatorFit& fit = *sampled.estimate.fit;
   if (!fit.isSimulated() || fit.isPlausible() || !readsOutputs()) {
     return sampled;
@@ -95,7 +97,8 @@ SampledMeasurement SimulatorSampler::samplePosterior(const VectorXd& features, c
       return other;
     }
   }
-  return sampled;
+  const bool was_spared = !sampled.estimate.isReliable() && !sampled.posterior.isExplained();
+  return was_spared ? sampleAsStated(features, known, stated, fit.best, options) : sampled;
 }
 
 double SimulatorSampler::findLeastChiSquare(const VectorXd& features, const VectorXd& known,

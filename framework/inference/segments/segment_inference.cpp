@@ -17,6 +17,7 @@
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
 #include "framework/inference/refiner.hpp"
+#include "framework/inference/segments/segment_faults.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/simulation/model_numbers.hpp"
@@ -238,6 +239,74 @@ void requireComplete(const SegmentedRecording& recording, const std::string& sou
   }
 }
 
+struct SegmentFit {
+  PreparedSegments prepared;
+  SupposedSegments supposed;
+  std::vector<FeatureInfo> samples;  ///< in the order of the residual
+  PosteriorEstimate estimate;
+};
+
+/// One recording, from one supposition to the next.
+class SegmentExplaining {
+ public:
+  SegmentExplaining(const SegmentGrid& grid, const VectorXd& known, const SimulatorPosteriorOptions& options,
+                    const std::string& source)
+      : grid_(grid), known_(known), options_(options), source_(source) {}
+
+  SegmentFit fitAs(SupposedSegments supposed) const {
+    SegmentFit fit{prepare(supposed.experiment, grid_, known_, supposed.samples), {}, {}, {}};
+    requireComplete(*fit.prepared.recording, source_);
+    fit.samples = listSamples(fit.prepared);
+    fit.estimate = makePosteriorEstimate(sample(fit.prepared, options_), fit.prepared.recording->unknown,
+                                         static_cast<Index>(fit.prepared.experiment.model.parameters.size()),
+                                         fit.samples);
+    if (fit.estimate.isReliable() && !takeOffsets(fit.estimate, supposed)) {
+      supposed.noise.clear();
+    }
+    fit.estimate.fit->outliers = supposed.outliers;
+    fit.estimate.fit->noise = supposed.noise;
+    fit.supposed = std::move(supposed);
+    return fit;
+  }
+
+  /// As it is stated or, where that does not explain it, without spikes or under other noise.
+  SegmentFit explain(SupposedSegments read) const {
+    constexpr double kLess = 0.5;  // of the misfit, as of other recordings (explainRecording)
+    SegmentFit fit = fitAs(std::move(read));
+    const auto is_unexplained = [&] {
+      return fit.estimate.fit->isSimulated() && !fit.estimate.fit->isPlausible();
+    };
+    if (!is_unexplained()) {
+      return fit;
+    }
+    const ResponseLayout& layout = fit.prepared.simulator->getLayout();
+    if (auto without = leaveSpikes(fit.supposed, layout, fit.prepared.recording->starts)) {
+      SegmentFit other = fitAs(std::move(*without));
+      if (other.estimate.fit->chi_square < kLess * fit.estimate.fit->chi_square) {
+        fit = std::move(other);
+      }
+    }
+    if (!is_unexplained()) {
+      return fit;
+    }
+    for (SupposedSegments& noise : supposeNoise(
+             fit.supposed, {fit.estimate.fit->residual, fit.samples, fit.prepared.simulator->getLayout()})) {
+      SegmentFit other = fitAs(std::move(noise));
+      const bool is_other = !other.estimate.fit->noise.empty();
+      if (is_other && other.estimate.isReliable() && other.estimate.fit->isPlausible()) {
+        return other;
+      }
+    }
+    return fit;
+  }
+
+ private:
+  const SegmentGrid& grid_;
+  const VectorXd& known_;
+  const SimulatorPosteriorOptions& options_;
+  const std::string& source_;
+};
+
 }  // namespace
 
 SegmentInference::SegmentInference(ExperimentSpec experiment, double length, VectorXd known, int draws)
@@ -262,24 +331,20 @@ InferredMeasurement SegmentInference::infer(const Table& table, std::optional<do
       makeSegmentGrid(experiment_, length_, findEnd(table, experiment_.measurement, zero));
   ExperimentSpec whole = makeRecordingExperiment(experiment_, grid);
   replaceMeasuredSignals(whole, table, zero);
-  const ReadSegments read = readSegments(table, zero, whole, grid);
-  PreparedSegments prepared = prepare(whole, grid, known_, read.samples);
-  requireComplete(*prepared.recording, table.source);
+  ReadSegments read = readSegments(table, zero, whole, grid);
+  const SegmentFit fit =
+      SegmentExplaining(grid, known_, options_, table.source).explain({whole, std::move(read.samples)});
 
   InferredMeasurement inferred;
   inferred.source = table.source;
   inferred.start = zero;
   inferred.left_out = read.remarks;
   inferred.remarks = describeBridged(whole.model);
-  inferred.segments =
-      SegmentReport{grid.count, grid.getLength(), static_cast<int>(prepared.recording->scales.size()),
-                    listSamples(prepared)};
-  const ModelSpec& model = prepared.experiment.model;
-  inferred.posterior =
-      makePosteriorEstimate(sample(prepared, options_), prepared.recording->unknown,
-                            static_cast<Index>(model.parameters.size()), inferred.segments->samples);
+  inferred.segments = SegmentReport{grid.count, grid.getLength(),
+                                    static_cast<int>(fit.prepared.recording->scales.size()), fit.samples};
+  inferred.posterior = fit.estimate;
   inferred.quantities = makeDerivedQuantities(experiment_);
-  inferred.prior = findStatedPrior(model);
+  inferred.prior = findStatedPrior(fit.prepared.experiment.model);
   return inferred;
 }
 

@@ -121,6 +121,60 @@ TEST(Segments, ReachTheLimitWithFreeInitialStates) {
   EXPECT_EQ(fit.residual.size(), kSamples * kSegments);
 }
 
+/// The recording with x other than measured.
+template <class Change>
+Table change(Table table, Change change) {
+  VectorXd& x = table.columns[2].values;
+  for (Index i = 0; i < x.size(); ++i) {
+    x[i] = change(i, x[i]);
+  }
+  return table;
+}
+
+void expectRight(const InferredMeasurement& inferred, const char* status) {
+  const Estimate estimate = selectEstimate(inferred);
+  EXPECT_EQ(estimate.statuses, std::vector<std::string>{status});
+  EXPECT_LT(std::abs(estimate.mean[0] - 100.0), 3.5 * estimate.stddev[0]) << status;
+  EXPECT_LT(std::abs(estimate.mean[1] - 1.0), 3.5 * estimate.stddev[1]) << status;
+}
+
+TEST(Segments, LeaveSpikesOut) {
+  const InferredMeasurement inferred = infer(change(
+      record(3), [](Index i, double x) { return i == 40 || i == 133 || i == 222 ? x + 200.0 * kNoise : x; }));
+  expectRight(inferred, "outliers");
+  EXPECT_EQ(inferred.posterior->fit->outliers.size(), 3U);
+}
+
+TEST(Segments, FindTheSizeOfTheNoise) {
+  std::mt19937 random(8);
+  std::normal_distribution<double> more(0.0, 2.0 * kNoise);
+  const InferredMeasurement inferred =
+      infer(change(record(3), [&](Index, double x) { return x + more(random); }));
+  expectRight(inferred, "noise_larger");
+  EXPECT_NEAR(inferred.posterior->fit->getNoiseFactor(), std::sqrt(5.0), 0.25);
+}
+
+TEST(Segments, FindTheOffsetOfASensor) {
+  const InferredMeasurement inferred =
+      infer(change(record(3), [](Index, double x) { return x + 5.0 * kNoise; }));
+  expectRight(inferred, "sensor_offset");
+  const FoundNoise& found = inferred.posterior->fit->noise.front().found;
+  EXPECT_NEAR(found.offset, 5.0 * kNoise, 4.0 * found.offset_stddev);
+  EXPECT_TRUE(inferred.posterior->nuisance.empty());
+}
+
+TEST(Segments, FindTheColourOfTheNoise) {
+  std::mt19937 random(9);
+  std::normal_distribution<double> normal(0.0, kNoise);
+  double error = normal(random);
+  const InferredMeasurement inferred = infer(change(record(3), [&](Index i, double) {
+    error = 0.7 * error + std::sqrt(1.0 - 0.49) * normal(random);
+    return run({0.05, 0.2}, 100.0, 1.0, 0, kSamples * kSegments)[i] + error;
+  }));
+  expectRight(inferred, "noise_coloured");
+  EXPECT_NEAR(inferred.posterior->fit->noise.front().found.autoregression[0], 0.7, 0.15);
+}
+
 /// The same where each force is known up to noise: of a segment 1 + G G', G by differences of the exact
 /// motion.
 MatrixXd calcLimitCovarianceWithNoisyForce(double force_noise) {
