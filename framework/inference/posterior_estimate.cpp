@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 
@@ -54,6 +56,23 @@ Estimate makeEstimate(BoundedDraws draws, const VectorXd& mean, const MatrixXd& 
   estimate.correlation = calcCorrelation(covariance);
   estimate.method = EstimationMethod::kPosterior;
   estimate.draws = std::move(draws);
+  return estimate;
+}
+
+/// Of the first p parameters.
+Estimate makeDetermined(const FloorDraws& floor, const std::vector<ParameterSpec>& unknown, Index p) {
+  if (!floor.isGiven()) {
+    return {};
+  }
+  const importance::WeightedDraws draws{floor.points.topRows(p), floor.weights};
+  Estimate estimate = makeEstimate(makeDraws(floor.points, floor.weights, unknown),
+                                   importance::calcMean(draws), importance::calcCovariance(draws));
+  estimate.correlation.resize(0, 0);
+  for (Index i = 0; i < p; ++i) {
+    if (!floor.determine(floor.points.row(i))) {
+      estimate.mean[i] = estimate.stddev[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
   return estimate;
 }
 
@@ -191,6 +210,8 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
   made.message = posterior.message;
   made.fit = makeFit(posterior, unknown, infos);
   made.places = posterior.places;
+  made.floor = posterior.floor;
+  made.determined = makeDetermined(made.floor, unknown, p);
   made.nuisance.assign(unknown.begin() + p, unknown.end());
   if (made.isReliable()) {
     made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),

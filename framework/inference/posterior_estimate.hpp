@@ -68,7 +68,11 @@ struct PosteriorEstimate {
   PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
   std::vector<Profile> profiles;                        ///< likewise, where they were asked for
   Eigen::MatrixXd places{};                             ///< SimulatorPosterior::places
-  std::vector<ParameterSpec> nuisance{};                ///< of the simulator's: drawn behind those reported
+  FloorDraws floor{};                                   ///< SimulatorPosterior::floor
+  /// Where it is not reliable: what is determined of the parameters that are reported all the same, by those
+  /// draws; NaN of the others (FloorDraws::determine).
+  Estimate determined{};
+  std::vector<ParameterSpec> nuisance{};  ///< of the simulator's: drawn behind those reported
 
   bool isReliable() const { return message.empty(); }
   /// "ok", "unreliable", or "posterior_uncalibrated" of a surrogate's that is in doubt.
