@@ -122,9 +122,15 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
   fit.searches = posterior.starts;
   fit.found_best = posterior.found_best;
   fit.simulations = posterior.simulations;
-  if (posterior.degrees > 0.0) {
+  fit.best = posterior.best;
+  fit.chi_square = posterior.chi_square;
+  fit.degrees = posterior.degrees;
+  fit.explained = posterior.isExplained();
+  for (const Index i : posterior.beyond) {
+    fit.beyond.push_back(unknown[static_cast<std::size_t>(i)].name.text);
+  }
+  if (posterior.standardized.residual.size() > 0) {
     const TestedResidual tested = takeInliers(posterior, infos, fit.outliers);
-    fit.best = posterior.best;
     fit.residual = tested.residual;
     fit.chi_square = tested.residual.squaredNorm();
     fit.degrees = tested.degrees;
@@ -132,9 +138,6 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
     fit.test = testResidual(tested.residual, tested.degrees, tested.infos);
     if (fit.test.largest >= 0) {
       fit.largest_feature = tested.infos[static_cast<std::size_t>(fit.test.largest)].name;
-    }
-    for (const Index i : posterior.beyond) {
-      fit.beyond.push_back(unknown[static_cast<std::size_t>(i)].name.text);
     }
     for (const FoundNoise& found : posterior.standardized.noise) {
       fit.noise.push_back({{}, {}, 0.0, 0.0, found});

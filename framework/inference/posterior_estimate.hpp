@@ -47,6 +47,8 @@ struct SimulatorFit {
 
   bool isSimulated() const { return degrees > 0.0; }
   bool isPlausible() const { return test.isPlausible(); }
+  /// Not of several measurements together, each of which is tested alone.
+  bool isTested() const { return residual.size() > 0 || !isSimulated(); }
   /// Whether the noise was supposed to be as it is stated.
   bool isAsStated() const;
   /// Of the noise over that stated, of the output where it differs most; 1 where it does nowhere.
@@ -84,7 +86,8 @@ PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown, const std::string& doubt);
 /// p: how many of them are reported, the first ones; infos: of the residuals, which are tested as they should
 /// be independent and of unit variance (SimulatorPosterior::standardized): outliers not at all, noise of
-/// unknown size by its shape alone. The reports of the noise have no names yet.
+/// unknown size by its shape alone; of several measurements together none. The reports of the noise have no
+/// names yet.
 PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown, Eigen::Index p,
                                         const std::vector<FeatureInfo>& infos);

@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/inference/select_estimate.hpp"
@@ -11,6 +13,11 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+
+/// "source,start"; several recordings together have no start.
+std::string nameMeasurement(const InferredMeasurement& inferred) {
+  return escapeCsv(inferred.source) + "," + (std::isnan(inferred.start) ? "" : toText(inferred.start));
+}
 
 /// "mean,sd,lower,upper"; empty cells where nothing is known.
 std::string makeMoments(const Estimate& estimate, const Bounds95& bounds, Index parameter) {
@@ -68,9 +75,10 @@ std::string makeDerivedMoments(const std::vector<DerivedValue>& values, std::siz
              : ",,";
 }
 
-/// Rows like those of parameters: what is derived, then what is identified.
+/// Rows like those of parameters: what is derived, then what is identified. judged: the cells of the
+/// judgement.
 std::string makeDerivedRows(const InferredMeasurement& inferred, const StatedValues& stated,
-                            const Estimate& estimate, bool posterior) {
+                            const std::string& judged, bool posterior) {
   const DerivedQuantities* quantities = inferred.quantities.get();
   std::vector<DerivedValue> found = stated.derived;
   found.insert(found.end(), stated.identified.begin(), stated.identified.end());
@@ -78,15 +86,15 @@ std::string makeDerivedRows(const InferredMeasurement& inferred, const StatedVal
   for (std::size_t k = 0; k < found.size(); ++k) {
     const DerivedValue& value = found[k];
     text +=
-        fmt::format("{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
-                    escapeCsv(value.name), escapeCsv(value.unit),
+        fmt::format("{},{},{},{},{}", nameMeasurement(inferred), escapeCsv(value.name), escapeCsv(value.unit),
                     value.isStated() ? fmt::format("{},{},{},{}", toText(value.mean), toText(value.stddev),
                                                    toText(value.lower95), toText(value.upper95))
                                      : ",,,",
-                    joinStatuses(estimate.statuses, " "), makePValue(inferred), estimate.getMethod());
+                    judged);
     if (inferred.refined) {
       const bool accepted = inferred.refined->isAccepted();
-      const Estimate refined = accepted ? makeEstimate(*inferred.refined, estimate.mean.size()) : Estimate{};
+      const Estimate refined =
+          accepted ? makeEstimate(*inferred.refined, stated.estimate.mean.size()) : Estimate{};
       text += makeDerivedMoments(deriveFrom(quantities, refined), k) +
               makeDerivedMoments(deriveFrom(quantities, inferred.by_estimator), k);
     }
@@ -125,16 +133,21 @@ std::string makeInferenceCsvHeader(bool refined, bool posterior) {
 
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters, bool posterior) {
-  const Estimate estimate = selectEstimate(inferred);
+  return makeAnswerCsvRows(inferred, selectEstimate(inferred), makePValue(inferred), parameters, posterior);
+}
+
+std::string makeAnswerCsvRows(const InferredMeasurement& inferred, const Estimate& estimate,
+                              const std::string& p_value, const std::vector<ParameterSpec>& parameters,
+                              bool posterior) {
+  const std::string judged =
+      fmt::format("{},{},{}", joinStatuses(estimate.statuses, " "), p_value, estimate.getMethod());
   const StatedValues stated = stateValues(inferred, estimate, parameters);
   const Bounds95 bounds = stated.estimate.calcBounds95();
   std::string text;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
-    text += fmt::format("{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
-                        escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit),
-                        makeMoments(stated.estimate, bounds, i), joinStatuses(estimate.statuses, " "),
-                        makePValue(inferred), estimate.getMethod());
+    text += fmt::format("{},{},{},{},{}", nameMeasurement(inferred), escapeCsv(parameters[p].name.text),
+                        escapeCsv(parameters[p].unit), makeMoments(stated.estimate, bounds, i), judged);
     if (inferred.refined) {
       text += makeRefinedCells(inferred, estimate, i);
     }
@@ -143,7 +156,7 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
     }
     text += "," + makeComponents(estimate.mixture, i) + "\n";
   }
-  return text + makeDerivedRows(inferred, stated, estimate, posterior);
+  return text + makeDerivedRows(inferred, stated, judged, posterior);
 }
 
 std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown) {
@@ -155,7 +168,7 @@ std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
     return "";
   }
   const BoundedDraws& draws = inferred.posterior->estimate.draws;
-  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
+  const std::string measurement = nameMeasurement(inferred);
   std::string text;
   for (Index i = 0; i < draws.weights.size(); ++i) {
     text += fmt::format("{},{},{}", measurement, i, toText(draws.weights[i]));
@@ -176,7 +189,7 @@ std::string makeProfileCsvRows(const InferredMeasurement& inferred,
   if (!inferred.posterior) {
     return "";
   }
-  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
+  const std::string measurement = nameMeasurement(inferred);
   std::string text;
   for (const Profile& profile : inferred.posterior->profiles) {
     const std::string& name = unknown[static_cast<std::size_t>(profile.parameter)].name.text;

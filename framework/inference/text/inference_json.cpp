@@ -306,8 +306,15 @@ void addModelTest(const std::optional<ModelTest>& test, const std::vector<Parame
 std::string makeInferenceJson(const InferredMeasurement& inferred,
                               const std::vector<ParameterSpec>& parameters,
                               const std::vector<FeatureInfo>& features) {
-  Json json{{"source", inferred.source}, {"start", inferred.start}};
-  const Estimate estimate = selectEstimate(inferred);
+  return formatJson(makeAnswerJson(inferred, selectEstimate(inferred), parameters, features));
+}
+
+Json makeAnswerJson(const InferredMeasurement& inferred, const Estimate& estimate,
+                    const std::vector<ParameterSpec>& parameters, const std::vector<FeatureInfo>& features) {
+  Json json{{"source", inferred.source}};
+  if (!std::isnan(inferred.start)) {
+    json["start"] = inferred.start;
+  }
   json["status"] = estimate.statuses.empty() ? Json() : Json(estimate.statuses.front());
   if (!estimate.statuses.empty()) {
     json["statuses"] = estimate.statuses;
@@ -330,7 +337,8 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
   addModelTest(inferred.model_test, parameters, json);
-  const bool was_simulated = inferred.posterior && inferred.posterior->fit;
+  const bool was_simulated =
+      inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->isTested();
   if (inferred.trust || was_simulated) {
     json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);
   }
@@ -340,7 +348,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["trust"] = toJson(*inferred.posterior->fit);
   }
   addOrigins(inferred, estimate, parameters, json);
-  return formatJson(json);
+  return json;
 }
 
 std::string makeErrorJson(const std::string& source, double start, const std::string& error) {

@@ -149,10 +149,11 @@ std::string describeSearches(const PosteriorEstimate& posterior) {
 }
 
 /// Whether an unreliable posterior says what happened alone: bounds that are to be widened are not to be
-/// narrowed, nor is that said twice.
+/// narrowed, nor is that said twice, and what disagrees comes first.
 bool isBrief(const std::vector<std::string>& statuses) {
-  constexpr Notice kOfBounds[] = {Notice::kAtBounds, Notice::kOutsideTraining, Notice::kMultimodal};
-  return isMismatch(statuses) || std::any_of(std::begin(kOfBounds), std::end(kOfBounds),
+  constexpr Notice kOthers[] = {Notice::kAtBounds, Notice::kOutsideTraining, Notice::kMultimodal,
+                                Notice::kTrialsDisagree};
+  return isMismatch(statuses) || std::any_of(std::begin(kOthers), std::end(kOthers),
                                              [&](Notice notice) { return hasStatus(statuses, notice); });
 }
 
@@ -234,10 +235,15 @@ std::string describeReading(const InferredMeasurement& inferred, const std::stri
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
-  const Estimate estimate = selectEstimate(inferred);
+  return describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters) +
+         describeEstimate(inferred, selectEstimate(inferred), parameters);
+}
+
+std::string describeEstimate(const InferredMeasurement& inferred, const Estimate& estimate,
+                             const std::vector<ParameterSpec>& parameters) {
   const bool sampled = estimate.method == EstimationMethod::kPosterior;
   const DerivedQuantities* quantities = inferred.quantities.get();
-  std::string text = describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters);
+  std::string text;
   if (inferred.posterior && inferred.posterior->fit) {
     text += describeInferredNoise(*inferred.posterior->fit);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,12 @@ void addModelTest(const std::optional<ModelTest>& test, const std::vector<Parame
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features);
 
+/// The lines below it. own: of statuses that have another text than that of one recording.
+std::string explainStatuses(const InferredMeasurement& inferred, const Estimate& estimate,
+                            const std::vector<ParameterSpec>& parameters,
+                            const std::vector<FeatureInfo>& features,
+                            const std::map<std::string, std::string>& own = {});
+
 /// How far the map's estimate is from what the measurement allows, where it is estimator_limited; a line
 /// each, or "".
 std::string describeMapLimit(const InferredMeasurement& inferred,
@@ -47,6 +54,16 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
 std::string makeInferenceCsvHeader(bool refined, bool posterior);
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters, bool posterior);
+
+/// The same of an answer from one recording or several: the estimate that is believed, with its statuses,
+/// and what is said beside. p_value: of the test that speaks for or against it.
+std::string describeEstimate(const InferredMeasurement& inferred, const Estimate& estimate,
+                             const std::vector<ParameterSpec>& parameters);
+std::string makeAnswerCsvRows(const InferredMeasurement& inferred, const Estimate& estimate,
+                              const std::string& p_value, const std::vector<ParameterSpec>& parameters,
+                              bool posterior);
+Json makeAnswerJson(const InferredMeasurement& inferred, const Estimate& estimate,
+                    const std::vector<ParameterSpec>& parameters, const std::vector<FeatureInfo>& features);
 
 /// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
 std::string makeInferenceJson(const InferredMeasurement& inferred,
