@@ -57,7 +57,9 @@ Intervals Estimate::findIntervals(Index parameter, Coverage coverage) const {
     return {draws.findInterval(parameter, coverage == Coverage::k50 ? 0.5 : 0.95)};
   }
   const double half_width = factor * stddev[parameter];
-  return {{mean[parameter] - half_width, mean[parameter] + half_width}};
+  const Intervals intervals{{mean[parameter] - half_width, mean[parameter] + half_width}};
+  return limits.lower.size() > 0 ? clampTo(limits.lower[parameter], limits.upper[parameter], intervals)
+                                 : intervals;
 }
 
 Bounds95 Estimate::calcBounds95() const {

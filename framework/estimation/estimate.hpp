@@ -36,6 +36,7 @@ struct Estimate {
   Mixture mixture{};              ///< where it is one, whose mean and stddev are above
   BoundedDraws draws{};           ///< where it is known by draws; a mixture then has their separate modes
   IntervalFactors interval_factors{};  ///< of intervals, where they are not those of the distribution above
+  Bounds95 limits{};                   ///< at which the intervals of a normal distribution end; or empty
   /// Where refinement followed a ridge: the joint distribution along it, of which mean, stddev and intervals
   /// are those of each parameter. What is derived from several follows from it.
   Mixture ridge{};

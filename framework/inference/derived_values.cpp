@@ -1,6 +1,7 @@
 #include "framework/inference/derived_values.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace twinmap {
 
@@ -22,15 +23,34 @@ std::vector<DerivedValue> listValues(const DerivedQuantities& quantities,
 
 }  // namespace
 
-std::vector<DerivedValue> deriveFrom(const DerivedQuantities* quantities, const Estimate& estimate) {
+bool DerivedValue::isStated() const {
+  return !std::isnan(mean);
+}
+
+DerivedValue describeDrawn(const std::string& name, const std::string& unit, const Eigen::VectorXd& values,
+                           const Eigen::VectorXd& weights, const FloorDraws* floor) {
+  if (floor != nullptr && !floor->determine(values)) {
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    return {name, unit, unknown, unknown, unknown, unknown};
+  }
+  const DerivedEstimate one = summarize({ValueDistribution(values, weights)});
+  return {name, unit, one.mean[0], one.stddev[0], one.lower95[0], one.upper95[0]};
+}
+
+std::vector<DerivedValue> deriveFrom(const DerivedQuantities* quantities, const Estimate& estimate,
+                                     const FloorDraws* floor) {
   if (quantities == nullptr || !estimate.isGiven()) {
     return {};
   }
   if (estimate.draws.isGiven()) {
-    return listValues(*quantities,
-                      quantities->propagateDraws(estimate.draws.points.topRows(quantities->countParameters()),
-                                                 estimate.draws.weights),
-                      kNormal95);
+    const Eigen::MatrixXd drawn =
+        quantities->calcAll(estimate.draws.points.topRows(quantities->countParameters()));
+    std::vector<DerivedValue> values;
+    for (Index k = 0; k < quantities->count(); ++k) {
+      const ParameterSpec& spec = quantities->getSpecs()[static_cast<std::size_t>(k)];
+      values.push_back(describeDrawn(spec.name.text, spec.unit, drawn.row(k), estimate.draws.weights, floor));
+    }
+    return values;
   }
   return listValues(*quantities, quantities->propagate(estimate), findLargestFactor(estimate).of95);
 }
@@ -51,11 +71,8 @@ std::vector<NuisanceEstimate> listNuisance(const std::optional<PosteriorEstimate
   std::vector<NuisanceEstimate> estimates;
   for (std::size_t n = 0; n < posterior->nuisance.size(); ++n) {
     const Index i = p + static_cast<Index>(n);
-    const double mean = draws.points.row(i).dot(draws.weights);
-    const double variance = (draws.points.row(i).array() - mean).square().matrix().dot(draws.weights);
-    const Eigen::VectorXd ends = draws.calcQuantiles(i, Eigen::Vector2d(0.025, 0.975));
-    estimates.push_back({posterior->nuisance[n].name.text, posterior->nuisance[n].unit, mean,
-                         std::sqrt(variance), ends[0], ends[1]});
+    estimates.push_back(describeDrawn(posterior->nuisance[n].name.text, posterior->nuisance[n].unit,
+                                      draws.points.row(i), draws.weights, nullptr));
   }
   return estimates;
 }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 
@@ -54,6 +56,23 @@ Estimate makeEstimate(BoundedDraws draws, const VectorXd& mean, const MatrixXd& 
   estimate.correlation = calcCorrelation(covariance);
   estimate.method = EstimationMethod::kPosterior;
   estimate.draws = std::move(draws);
+  return estimate;
+}
+
+/// Of the first p parameters.
+Estimate makeDetermined(const FloorDraws& floor, const std::vector<ParameterSpec>& unknown, Index p) {
+  if (!floor.isGiven()) {
+    return {};
+  }
+  const importance::WeightedDraws draws{floor.points.topRows(p), floor.weights};
+  Estimate estimate = makeEstimate(makeDraws(floor.points, floor.weights, unknown),
+                                   importance::calcMean(draws), importance::calcCovariance(draws));
+  estimate.correlation.resize(0, 0);
+  for (Index i = 0; i < p; ++i) {
+    if (!floor.determine(floor.points.row(i))) {
+      estimate.mean[i] = estimate.stddev[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
   return estimate;
 }
 
@@ -105,9 +124,15 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
   fit.searches = posterior.starts;
   fit.found_best = posterior.found_best;
   fit.simulations = posterior.simulations;
-  if (posterior.degrees > 0.0) {
+  fit.best = posterior.best;
+  fit.chi_square = posterior.chi_square;
+  fit.degrees = posterior.degrees;
+  fit.explained = posterior.isExplained();
+  for (const Index i : posterior.beyond) {
+    fit.beyond.push_back(unknown[static_cast<std::size_t>(i)].name.text);
+  }
+  if (posterior.standardized.residual.size() > 0) {
     const TestedResidual tested = takeInliers(posterior, infos, fit);
-    fit.best = posterior.best;
     fit.residual = tested.residual;
     fit.chi_square = tested.residual.squaredNorm();
     fit.degrees = tested.degrees;
@@ -115,9 +140,6 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
     fit.test = testResidual(tested.residual, tested.degrees, tested.infos);
     if (fit.test.largest >= 0) {
       fit.largest_feature = tested.infos[static_cast<std::size_t>(fit.test.largest)].name;
-    }
-    for (const Index i : posterior.beyond) {
-      fit.beyond.push_back(unknown[static_cast<std::size_t>(i)].name.text);
     }
     for (const FoundNoise& found : posterior.standardized.noise) {
       fit.noise.push_back({{}, {}, 0.0, 0.0, found});
@@ -193,6 +215,8 @@ PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
   made.message = posterior.message;
   made.fit = makeFit(posterior, unknown, infos);
   made.places = posterior.places;
+  made.floor = posterior.floor;
+  made.determined = makeDetermined(made.floor, unknown, p);
   made.nuisance.assign(unknown.begin() + p, unknown.end());
   if (made.isReliable()) {
     made.estimate = makeEstimate(makeDraws(posterior.draws, posterior.weights, unknown),

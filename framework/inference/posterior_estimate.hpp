@@ -48,6 +48,8 @@ struct SimulatorFit {
 
   bool isSimulated() const { return degrees > 0.0; }
   bool isPlausible() const { return test.isPlausible(); }
+  /// Not of several measurements together, each of which is tested alone.
+  bool isTested() const { return residual.size() > 0 || !isSimulated(); }
   /// Whether the noise was supposed to be as it is stated.
   bool isAsStated() const;
   /// Of the noise over that stated, of the output where it differs most; 1 where it does nowhere.
@@ -69,7 +71,11 @@ struct PosteriorEstimate {
   PosteriorShape shape = PosteriorShape::kInformative;  ///< of the simulator's, where it is reliable
   std::vector<Profile> profiles;                        ///< likewise, where they were asked for
   Eigen::MatrixXd places{};                             ///< SimulatorPosterior::places
-  std::vector<ParameterSpec> nuisance{};                ///< of the simulator's: drawn behind those reported
+  FloorDraws floor{};                                   ///< SimulatorPosterior::floor
+  /// Where it is not reliable: what is determined of the parameters that are reported all the same, by those
+  /// draws; NaN of the others (FloorDraws::determine).
+  Estimate determined{};
+  std::vector<ParameterSpec> nuisance{};  ///< of the simulator's: drawn behind those reported
 
   bool isReliable() const { return message.empty(); }
   /// "ok", "unreliable", or "posterior_uncalibrated" of a surrogate's that is in doubt.
@@ -81,7 +87,8 @@ PosteriorEstimate makePosteriorEstimate(const SurrogatePosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown, const std::string& doubt);
 /// p: how many of them are reported, the first ones; infos: of the residuals, which are tested as they should
 /// be independent and of unit variance (SimulatorPosterior::standardized): outliers not at all, noise of
-/// unknown size by its shape alone. The reports of the noise have no names yet.
+/// unknown size by its shape alone; of several measurements together none. The reports of the noise have no
+/// names yet.
 PosteriorEstimate makePosteriorEstimate(const SimulatorPosterior& posterior,
                                         const std::vector<ParameterSpec>& unknown, Eigen::Index p,
                                         const std::vector<FeatureInfo>& infos);

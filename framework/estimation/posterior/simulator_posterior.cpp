@@ -65,11 +65,16 @@ void setDraws(const AdaptiveDraws& drawn, const Landscape& landscape, const LogC
 }
 
 /// What is identified is seen from the valleys, however badly they are sampled.
-MatrixXd listPlaces(const BasinSearch& found, ProblemSurface& whole, std::uint64_t seed) {
-  const MatrixXd floors = findValleyPlaces(whole.upd(), found.basins, seed);
-  MatrixXd places(floors.rows(), floors.cols() + 1);
-  places << found.basins.front().local.at, floors;
-  return toParameters(whole.getCoordinates(), places);
+void setPlaces(const BasinSearch& found, ProblemSurface& whole, std::uint64_t seed,
+               SimulatorPosterior& posterior) {
+  std::vector<LocalSurface> places = findValleyPlaces(whole.upd(), found.basins, seed);
+  places.insert(places.begin(), found.basins.front().local);
+  const LogCoordinates& coordinates = whole.getCoordinates();
+  posterior.places.resize(coordinates.getCount(), static_cast<Index>(places.size()));
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    posterior.places.col(static_cast<Index>(k)) = coordinates.toParameters(places[k].at);
+  }
+  posterior.floor = drawAcrossValleys(places, coordinates, seed);
 }
 
 /// In the logarithms, whatever the draws were drawn in.
@@ -148,7 +153,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
       setProfiles(problem, whole, posterior);
     }
   } else if (posterior.isExplained() && mayBend(problem)) {
-    posterior.places = listPlaces(found, whole, options.seed);
+    setPlaces(found, whole, options.seed, posterior);
     posterior.simulations = surface.getSimulations() + sampling.simulations;
   }
   return posterior;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/estimation/posterior/basins/basin_search.hpp"
+#include "framework/estimation/posterior/draws/floor_draws.hpp"
 #include "framework/estimation/posterior/draws/posterior_draws.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
 #include "framework/estimation/posterior/posterior_problem.hpp"
@@ -47,6 +48,7 @@ struct SimulatorPosterior {
   /// u x n: where on the floors of its valleys it fits (findValleyPlaces), best first, in the place of draws
   /// where it is not reliable but noise explains it; empty else, and of more than kManyUnknown.
   Eigen::MatrixXd places;
+  FloorDraws floor{};  ///< likewise, about these
 
   bool isReliable() const { return message.empty(); }
   /// Whether noise explains the best point (calcChiSquareLimit).

@@ -109,14 +109,6 @@ std::vector<Combination> nameCombinations(const FlatDirections& flat,
   return combinations;
 }
 
-std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {
-  std::vector<std::string> names;
-  for (const Index j : ridge.parameters) {
-    names.push_back(parameters[static_cast<std::size_t>(j)].name.text);
-  }
-  return listNames(names);
-}
-
 std::string listExpressions(const std::vector<Combination>& combinations,
                             const std::vector<ParameterSpec>& parameters) {
   std::vector<std::string> expressions;
@@ -183,6 +175,14 @@ std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const Ma
     }
   }
   return nameRidges(findFlatDirections(looked_at, points(Eigen::all, places)), parameters, of);
+}
+
+std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> names;
+  for (const Index j : ridge.parameters) {
+    names.push_back(parameters[static_cast<std::size_t>(j)].name.text);
+  }
+  return listNames(names);
 }
 
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {

@@ -42,6 +42,9 @@ std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, c
                               const std::vector<ParameterSpec>& parameters,
                               RidgePoints of = RidgePoints::kOfAny);
 
+/// "m, L".
+std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>& parameters);
+
 /// "of m, L the features determine only m * L"; without combinations that they do not determine them one by
 /// one. With the units of constants, and with sums that hold near the best fit alone, as such.
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters);

@@ -7,7 +7,6 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
-#include <set>
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
@@ -17,6 +16,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
+#include "framework/inference/joint/joint_estimate.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/simulation/simulator_team.hpp"
@@ -102,16 +102,16 @@ MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<Recording
   return given;
 }
 
-/// Of the unknown parameters, the sizes of faults of clocks, whose bounds are those of a search.
-std::set<Index> listClockSizes(const PosteriorProblem& problem,
-                               const std::vector<ExplainedRecording>& alone) {
-  std::set<Index> sizes;
+/// Without the sizes of faults of clocks, whose bounds are those of a search.
+void leaveClockBounds(const PosteriorProblem& problem, const std::vector<ExplainedRecording>& alone,
+                      std::vector<std::string>& beyond) {
   for (std::size_t k = 0; k < alone.size(); ++k) {
     const std::vector<Index>& unknown = problem.trials[k].unknown;
-    sizes.insert(unknown.end() - static_cast<std::ptrdiff_t>(alone[k].inferred.clock_faults.size()),
-                 unknown.end());
+    for (std::size_t j = unknown.size() - alone[k].inferred.clock_faults.size(); j < unknown.size(); ++j) {
+      const std::string& size = problem.unknown[static_cast<std::size_t>(unknown[j])].name.text;
+      beyond.erase(std::remove(beyond.begin(), beyond.end(), size), beyond.end());
+    }
   }
-  return sizes;
 }
 
 std::vector<std::size_t> listReliable(const std::vector<RecordingInference>& alone) {
@@ -146,25 +146,20 @@ std::vector<Contradiction> findContradictions(const std::vector<RecordingInferen
   return largest;
 }
 
-std::vector<ScatterEstimate> combineRecordings(const std::vector<RecordingInference>& alone,
-                                               const std::vector<ParameterSpec>& parameters) {
+std::vector<ScatterEstimate> combineRecordings(const std::vector<RecordingInference>& alone, Index shared) {
   const std::vector<std::size_t> reliable = listReliable(alone);
   std::vector<ScatterEstimate> combined;
   if (reliable.size() < 2) {
     return combined;
   }
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
+  for (Index p = 0; p < shared; ++p) {
     VectorXd values(static_cast<Index>(reliable.size())), stddevs(values.size());
     for (Index i = 0; i < values.size(); ++i) {
       const SimulatorPosterior& posterior = alone[reliable[static_cast<std::size_t>(i)]].posterior;
-      values[i] = posterior.mean[static_cast<Index>(p)];
-      stddevs[i] = posterior.stddev[static_cast<Index>(p)];
+      values[i] = posterior.mean[p];
+      stddevs[i] = posterior.stddev[p];
     }
-    ScatterEstimate estimate = combineScattered(values, stddevs);
-    const Bounds& bounds = parameters[p].bounds;
-    estimate.lower = std::max(estimate.lower, bounds.lower);
-    estimate.upper = std::min(estimate.upper, bounds.upper);
-    combined.push_back(estimate);
+    combined.push_back(combineScattered(values, stddevs));
   }
   return combined;
 }
@@ -203,9 +198,8 @@ ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs
   const double spread = weights.dot((values.array() - estimate.mean).square().matrix()) / degrees;
   // never narrower than the stated standard deviations allow (Röver, Knapp and Friede 2015)
   estimate.stddev = std::sqrt(std::max(1.0, spread) / weights.sum());
-  const double reach = boost::math::quantile(boost::math::students_t_distribution<>(degrees), 0.975);
-  estimate.lower = estimate.mean - reach * estimate.stddev;
-  estimate.upper = estimate.mean + reach * estimate.stddev;
+  const boost::math::students_t_distribution<> few(degrees);
+  estimate.factor = {boost::math::quantile(few, 0.75), boost::math::quantile(few, 0.975)};
   return estimate;
 }
 
@@ -238,7 +232,7 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
   } else if (inferred.findMissing() != nullptr && !inferred.disagrees()) {
     statuses.emplace_back("missing_term");
   }
-  if (!inferred.beyond.empty()) {
+  if (!inferred.joint.beyond.empty()) {
     statuses.emplace_back("at_bounds");
   }
   if (inferred.disagrees()) {
@@ -392,12 +386,6 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   if (!(inferred.joint.degrees > 0.0)) {
     return inferred;
   }
-  const std::set<Index> clocks = listClockSizes(problem, alone);
-  for (const Index i : inferred.joint.beyond) {
-    if (clocks.count(i) == 0) {
-      inferred.beyond.push_back(problem.unknown[static_cast<std::size_t>(i)].name.text);
-    }
-  }
   std::vector<double> separate;
   for (const RecordingInference& one : inferred.alone) {
     separate.push_back(one.posterior.misfit);
@@ -405,10 +393,12 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   inferred.agreement =
       testAgreement(inferred.joint.misfit, separate, linearizeParts(problem, inferred.joint.best), problem,
                     inferred.joint.best, options_.seed);
+  inferred.together = describeTogether(members_.front().reader->getExperiment(), problem, inferred.joint);
+  leaveClockBounds(problem, alone, inferred.together.posterior->fit->beyond);
   inferred.contradictions = findContradictions(inferred.alone, shared);
   nameNoise(alone, inferred);
   if (inferred.disagrees()) {
-    inferred.scatter = combineRecordings(inferred.alone, getParameters());
+    inferred.scatter = combineRecordings(inferred.alone, shared);
   }
   return inferred;
 }

@@ -29,8 +29,9 @@ struct Contradiction {
 
 /// A parameter's mean over recordings that scatter more than their standard deviations say.
 struct ScatterEstimate {
-  double mean = 0.0, stddev = 0.0, lower = 0.0, upper = 0.0;  ///< 95 % interval
-  double scatter = 0.0;  ///< standard deviation between recordings that their own does not explain
+  double mean = 0.0, stddev = 0.0;
+  IntervalFactor factor{};  ///< of a Student distribution, as recordings are few
+  double scatter = 0.0;     ///< standard deviation between recordings that their own does not explain
 };
 
 /// A recording by itself.
@@ -44,8 +45,8 @@ struct RecordingInference {
 struct JointInference {
   std::vector<RecordingInference> alone;
   SimulatorPosterior joint;                   ///< of the machine's parameters
+  InferredMeasurement together{};             ///< the same as an answer of one (describeTogether)
   std::optional<Agreement> agreement;         ///< where all could be simulated
-  std::vector<std::string> beyond{};          ///< what fits best beyond a bound (findBeyondBounds)
   std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first
   std::vector<ScatterEstimate> scatter;       ///< of each parameter; empty unless they disagree
   int simulations = 0;

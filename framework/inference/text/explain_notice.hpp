@@ -26,9 +26,15 @@ std::string explainBriefly(Notice notice, const Arguments&... arguments) {
   return fmt::format("  {}: {}\n", getNotice(notice).name, text.substr(0, text.find('\n')));
 }
 
-/// Why a posterior is not reliable. More draws are not advised where they were taken.
-inline std::string explainUnreliable(const std::string& why, const Asked& asked) {
+/// Why a posterior is not reliable. More draws are not advised where they were taken, nor where parameters
+/// are not determined one by one (`undetermined`: "1 of m, L").
+inline std::string explainUnreliable(const std::string& why, const Asked& asked,
+                                     const std::string& undetermined = "") {
   constexpr int kMany = 4000;  // as the notice advises
+  if (!undetermined.empty()) {
+    return explainBriefly(Notice::kUnreliable, why) +
+           fmt::format("    Fix {} at known values, or measure another output.\n", undetermined);
+  }
   return asked.draws < kMany
              ? explainNotice(Notice::kUnreliable, why)
              : explainBriefly(Notice::kUnreliable, why) +

@@ -1,9 +1,11 @@
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/stated_values.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
@@ -12,12 +14,18 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// "mean,sd,lower,upper"; empty cells where nothing is believed.
+/// "source,start"; several recordings together have no start.
+std::string nameMeasurement(const InferredMeasurement& inferred) {
+  return escapeCsv(inferred.source) + "," + (std::isnan(inferred.start) ? "" : toText(inferred.start));
+}
+
+/// "mean,sd,lower,upper"; empty cells where nothing is known.
 std::string makeMoments(const Estimate& estimate, const Bounds95& bounds, Index parameter) {
-  return estimate.isGiven() ? fmt::format("{},{},{},{}", toText(estimate.mean[parameter]),
-                                          toText(estimate.stddev[parameter]), toText(bounds.lower[parameter]),
-                                          toText(bounds.upper[parameter]))
-                            : ",,,";
+  return isStated(estimate, parameter)
+             ? fmt::format("{},{},{},{}", toText(estimate.mean[parameter]),
+                           toText(estimate.stddev[parameter]), toText(bounds.lower[parameter]),
+                           toText(bounds.upper[parameter]))
+             : ",,,";
 }
 
 /// "0.52: 0.05 +- 0.001; 0.48: -0.05 +- 0.001", weight, mean and sd of each; "" of one.
@@ -60,36 +68,42 @@ std::string makeRefinedCells(const InferredMeasurement& inferred, const Estimate
          fmt::format(",{},{}", toText(by_estimator.mean[parameter]), toText(by_estimator.stddev[parameter]));
 }
 
-/// ",mean,sd" of a derived quantity by one of the estimates beside; empty cells where there is none.
-std::string makeDerivedMoments(const std::vector<DerivedValue>& values, std::size_t quantity) {
-  return values.empty()
-             ? ",,"
-             : fmt::format(",{},{}", toText(values[quantity].mean), toText(values[quantity].stddev));
+/// ",mean,sd" of a value by one of the estimates beside; empty cells where there is none.
+std::string makeDerivedMoments(const std::vector<DerivedValue>& values, std::size_t value) {
+  return value < values.size()
+             ? fmt::format(",{},{}", toText(values[value].mean), toText(values[value].stddev))
+             : ",,";
 }
 
-/// Rows like those of parameters.
-std::string makeDerivedRows(const InferredMeasurement& inferred, const Estimate& estimate, bool posterior) {
+/// Rows like those of parameters: what is derived, then what is identified. judged: the cells of the
+/// judgement.
+std::string makeDerivedRows(const InferredMeasurement& inferred, const StatedValues& stated,
+                            const std::string& judged, bool posterior) {
   const DerivedQuantities* quantities = inferred.quantities.get();
-  const std::vector<DerivedValue> found = deriveFrom(quantities, estimate);
+  std::vector<DerivedValue> found = stated.derived;
+  found.insert(found.end(), stated.identified.begin(), stated.identified.end());
   std::string text;
   for (std::size_t k = 0; k < found.size(); ++k) {
+    const DerivedValue& value = found[k];
     text +=
-        fmt::format("{},{},{},{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
-                    escapeCsv(found[k].name), escapeCsv(found[k].unit), toText(found[k].mean),
-                    toText(found[k].stddev), toText(found[k].lower95), toText(found[k].upper95),
-                    joinStatuses(estimate.statuses, " "), makePValue(inferred), estimate.getMethod());
+        fmt::format("{},{},{},{},{}", nameMeasurement(inferred), escapeCsv(value.name), escapeCsv(value.unit),
+                    value.isStated() ? fmt::format("{},{},{},{}", toText(value.mean), toText(value.stddev),
+                                                   toText(value.lower95), toText(value.upper95))
+                                     : ",,,",
+                    judged);
     if (inferred.refined) {
       const bool accepted = inferred.refined->isAccepted();
-      const Estimate refined = accepted ? makeEstimate(*inferred.refined, estimate.mean.size()) : Estimate{};
+      const Estimate refined =
+          accepted ? makeEstimate(*inferred.refined, stated.estimate.mean.size()) : Estimate{};
       text += makeDerivedMoments(deriveFrom(quantities, refined), k) +
               makeDerivedMoments(deriveFrom(quantities, inferred.by_estimator), k);
     }
     if (posterior) {
       const std::vector<DerivedValue> sampled = deriveFrom(quantities, inferred.posterior->estimate);
       text += makeDerivedMoments(sampled, k) +
-              (sampled.empty()
-                   ? ",,,,,"
-                   : fmt::format(",{},,,,{}", toText(sampled[k].lower95), toText(sampled[k].upper95))) +
+              (k < sampled.size()
+                   ? fmt::format(",{},,,,{}", toText(sampled[k].lower95), toText(sampled[k].upper95))
+                   : ",,,,,") +
               fmt::format(",{},{}", toText(inferred.posterior->effective_sample_size),
                           toText(inferred.posterior->pareto_shape));
     }
@@ -119,15 +133,21 @@ std::string makeInferenceCsvHeader(bool refined, bool posterior) {
 
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters, bool posterior) {
-  const Estimate estimate = selectEstimate(inferred);
-  const Bounds95 bounds = estimate.calcBounds95();
+  return makeAnswerCsvRows(inferred, selectEstimate(inferred), makePValue(inferred), parameters, posterior);
+}
+
+std::string makeAnswerCsvRows(const InferredMeasurement& inferred, const Estimate& estimate,
+                              const std::string& p_value, const std::vector<ParameterSpec>& parameters,
+                              bool posterior) {
+  const std::string judged =
+      fmt::format("{},{},{}", joinStatuses(estimate.statuses, " "), p_value, estimate.getMethod());
+  const StatedValues stated = stateValues(inferred, estimate, parameters);
+  const Bounds95 bounds = stated.estimate.calcBounds95();
   std::string text;
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Index>(p);
-    text += fmt::format("{},{},{},{},{},{},{},{}", escapeCsv(inferred.source), toText(inferred.start),
-                        escapeCsv(parameters[p].name.text), escapeCsv(parameters[p].unit),
-                        makeMoments(estimate, bounds, i), joinStatuses(estimate.statuses, " "),
-                        makePValue(inferred), estimate.getMethod());
+    text += fmt::format("{},{},{},{},{}", nameMeasurement(inferred), escapeCsv(parameters[p].name.text),
+                        escapeCsv(parameters[p].unit), makeMoments(stated.estimate, bounds, i), judged);
     if (inferred.refined) {
       text += makeRefinedCells(inferred, estimate, i);
     }
@@ -136,7 +156,7 @@ std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
     }
     text += "," + makeComponents(estimate.mixture, i) + "\n";
   }
-  return text + makeDerivedRows(inferred, estimate, posterior);
+  return text + makeDerivedRows(inferred, stated, judged, posterior);
 }
 
 std::string makeDrawsCsvHeader(const std::vector<ParameterSpec>& unknown) {
@@ -148,7 +168,7 @@ std::string makeDrawsCsvRows(const InferredMeasurement& inferred) {
     return "";
   }
   const BoundedDraws& draws = inferred.posterior->estimate.draws;
-  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
+  const std::string measurement = nameMeasurement(inferred);
   std::string text;
   for (Index i = 0; i < draws.weights.size(); ++i) {
     text += fmt::format("{},{},{}", measurement, i, toText(draws.weights[i]));
@@ -169,7 +189,7 @@ std::string makeProfileCsvRows(const InferredMeasurement& inferred,
   if (!inferred.posterior) {
     return "";
   }
-  const std::string measurement = escapeCsv(inferred.source) + "," + toText(inferred.start);
+  const std::string measurement = nameMeasurement(inferred);
   std::string text;
   for (const Profile& profile : inferred.posterior->profiles) {
     const std::string& name = unknown[static_cast<std::size_t>(profile.parameter)].name.text;

@@ -2,8 +2,8 @@
 
 #include "framework/base/json/json.hpp"
 #include "framework/estimation/estimate.hpp"
-#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/stated_values.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
@@ -34,6 +34,9 @@ Json toJson(const Estimate& estimate, const std::vector<ParameterSpec>& paramete
   Json json = Json::object();
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     const auto i = static_cast<Eigen::Index>(p);
+    if (!isStated(estimate, i)) {
+      continue;
+    }
     const Intervals of95 = estimate.findIntervals(i, Coverage::k95);
     Json& one = json[parameters[p].name.text];
     one["mean"] = estimate.mean[i];
@@ -53,22 +56,32 @@ Json toJson(const Estimate& estimate, const std::vector<ParameterSpec>& paramete
   return json;
 }
 
-Json toJson(const std::vector<DerivedValue>& derived) {
+Json toJson(const DerivedValue& value) {
   Json json = Json::object();
-  for (const DerivedValue& value : derived) {
-    json[value.name] = {{"mean", value.mean},
-                        {"sd", value.stddev},
-                        {"lower", value.lower95},
-                        {"upper", value.upper95},
-                        {"unit", value.unit}};
+  if (value.isStated()) {
+    json = {{"mean", value.mean}, {"sd", value.stddev}, {"lower", value.lower95}, {"upper", value.upper95}};
+  }
+  json["unit"] = value.unit;
+  return json;
+}
+
+Json toJson(const std::vector<DerivedValue>& values) {
+  Json json = Json::object();
+  for (const DerivedValue& value : values) {
+    if (value.isStated()) {
+      json[value.name] = toJson(value);
+    }
   }
   return json;
 }
 
-Json makeIdentified(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters) {
+/// values: of the combinations, or none.
+Json makeIdentified(const std::vector<DerivedEntry>& entries, const std::vector<DerivedValue>& values) {
   Json identified = Json::array();
-  for (const DerivedEntry& entry : listDerived(inferred.ridges, parameters)) {
-    identified.push_back({{"name", entry.name}, {"expression", entry.expression}, {"unit", entry.unit}});
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    Json one{{"name", entries[k].name}, {"expression", entries[k].expression}};
+    one.update(values.empty() ? Json{{"unit", entries[k].unit}} : toJson(values[k]));
+    identified.push_back(one);
   }
   return identified;
 }
@@ -227,13 +240,21 @@ void addRecording(const InferredMeasurement& inferred, Json& json) {
   }
 }
 
-void addNuisance(const InferredMeasurement& inferred, Json& json) {
-  for (const NuisanceEstimate& one : listNuisance(inferred.posterior)) {
-    json["nuisance"][one.name] = {{"mean", one.mean},
-                                  {"sd", one.stddev},
-                                  {"lower", one.lower95},
-                                  {"upper", one.upper95},
-                                  {"unit", one.unit}};
+/// What is known in numbers.
+void addValues(const InferredMeasurement& inferred, const Estimate& believed,
+               const std::vector<ParameterSpec>& parameters, Json& json) {
+  const StatedValues stated = stateValues(inferred, believed, parameters);
+  if (const Json values = toJson(stated.estimate, parameters); !values.empty()) {
+    json["parameters"] = values;
+  }
+  if (!stated.nuisance.empty()) {
+    json["nuisance"] = toJson(stated.nuisance);
+  }
+  if (inferred.quantities) {
+    json["derived"] = toJson(stated.derived);
+  }
+  if (!inferred.ridges.empty()) {
+    json["identified"] = makeIdentified(listDerived(inferred.ridges, parameters), stated.identified);
   }
 }
 
@@ -285,8 +306,15 @@ void addModelTest(const std::optional<ModelTest>& test, const std::vector<Parame
 std::string makeInferenceJson(const InferredMeasurement& inferred,
                               const std::vector<ParameterSpec>& parameters,
                               const std::vector<FeatureInfo>& features) {
-  Json json{{"source", inferred.source}, {"start", inferred.start}};
-  const Estimate estimate = selectEstimate(inferred);
+  return formatJson(makeAnswerJson(inferred, selectEstimate(inferred), parameters, features));
+}
+
+Json makeAnswerJson(const InferredMeasurement& inferred, const Estimate& estimate,
+                    const std::vector<ParameterSpec>& parameters, const std::vector<FeatureInfo>& features) {
+  Json json{{"source", inferred.source}};
+  if (!std::isnan(inferred.start)) {
+    json["start"] = inferred.start;
+  }
   json["status"] = estimate.statuses.empty() ? Json() : Json(estimate.statuses.front());
   if (!estimate.statuses.empty()) {
     json["statuses"] = estimate.statuses;
@@ -301,16 +329,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
                         {"states", inferred.segments->states}};
   }
   addRecording(inferred, json);
-  if (estimate.isGiven()) {
-    json["parameters"] = toJson(estimate, parameters);
-  }
-  addNuisance(inferred, json);
-  if (inferred.quantities) {
-    json["derived"] = toJson(deriveFrom(inferred.quantities.get(), estimate));
-  }
-  if (!inferred.ridges.empty()) {
-    json["identified"] = makeIdentified(inferred, parameters);
-  }
+  addValues(inferred, estimate, parameters, json);
   if (estimate.correlation.size() > 0) {
     json["covariance"] = makeRows(estimate.calcCovariance());
   }
@@ -318,7 +337,8 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["components"] = makeComponents(estimate.mixture, parameters);
   }
   addModelTest(inferred.model_test, parameters, json);
-  const bool was_simulated = inferred.posterior && inferred.posterior->fit;
+  const bool was_simulated =
+      inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->isTested();
   if (inferred.trust || was_simulated) {
     json["fault"] = inferred.fault.empty() ? Json(nullptr) : Json(inferred.fault);
   }
@@ -328,7 +348,7 @@ std::string makeInferenceJson(const InferredMeasurement& inferred,
     json["trust"] = toJson(*inferred.posterior->fit);
   }
   addOrigins(inferred, estimate, parameters, json);
-  return formatJson(json);
+  return json;
 }
 
 std::string makeErrorJson(const std::string& source, double start, const std::string& error) {

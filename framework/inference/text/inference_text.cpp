@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "framework/base/log/notice.hpp"
@@ -10,8 +11,8 @@
 #include "framework/base/text/text_tables.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/stated_values.hpp"
 #include "framework/inference/text/explain_notice.hpp"
 
 namespace twinmap {
@@ -44,33 +45,51 @@ std::string makeTable(std::vector<Row> rows) {
   return alignRows(rows, rows.front().size(), kIndent);
 }
 
-void addRows(const std::vector<DerivedValue>& derived, std::vector<Row>& rows) {
-  for (const DerivedValue& value : derived) {
-    ParameterSpec shown;
-    shown.name.text = value.name;
-    shown.unit = value.unit;
-    rows.push_back(makeRow(shown, value.mean, value.stddev, {{value.lower95, value.upper95}}));
+void addRows(const std::vector<DerivedValue>& values, const char* kind, std::vector<Row>& rows) {
+  for (const DerivedValue& value : values) {
+    if (value.isStated()) {
+      ParameterSpec shown;
+      shown.name.text = value.name + kind;
+      shown.unit = value.unit;
+      rows.push_back(makeRow(shown, value.mean, value.stddev, {{value.lower95, value.upper95}}));
+    }
   }
+}
+
+/// The combinations that the experiment does not derive anyway.
+std::vector<DerivedValue> dropDerived(const StatedValues& stated) {
+  std::vector<DerivedValue> others;
+  std::copy_if(stated.identified.begin(), stated.identified.end(), std::back_inserter(others),
+               [&](const DerivedValue& one) {
+                 constexpr double kSame = 1e-9;  // of an sd: the same draws in another order
+                 return std::none_of(stated.derived.begin(), stated.derived.end(),
+                                     [&](const DerivedValue& derived) {
+                                       return std::abs(one.mean - derived.mean) <= kSame * one.stddev;
+                                     });
+               });
+  return others;
+}
+
+/// "" where nothing is stated.
+std::string makeTable(const StatedValues& stated, const std::vector<ParameterSpec>& parameters) {
+  std::vector<Row> rows;
+  for (std::size_t p = 0; p < parameters.size(); ++p) {
+    const auto i = static_cast<Index>(p);
+    if (isStated(stated.estimate, i)) {
+      rows.push_back(makeRow(parameters[p], stated.estimate.mean[i], stated.estimate.stddev[i],
+                             stated.estimate.findIntervals(i, Coverage::k95)));
+    }
+  }
+  addRows(stated.derived, "", rows);
+  addRows(dropDerived(stated), "", rows);
+  addRows(stated.nuisance, " (nuisance)", rows);
+  return rows.empty() ? "" : makeTable(std::move(rows));
 }
 
 /// `quantities`: null where nothing is derived.
 std::string makeTable(const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
-                      const DerivedQuantities* quantities,
-                      const std::vector<NuisanceEstimate>& nuisance = {}) {
-  std::vector<Row> rows;
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const auto i = static_cast<Index>(p);
-    rows.push_back(makeRow(parameters[p], estimate.mean[i], estimate.stddev[i],
-                           estimate.findIntervals(i, Coverage::k95)));
-  }
-  addRows(deriveFrom(quantities, estimate), rows);
-  for (const NuisanceEstimate& one : nuisance) {
-    ParameterSpec shown;
-    shown.name.text = one.name + " (nuisance)";
-    shown.unit = one.unit;
-    rows.push_back(makeRow(shown, one.mean, one.stddev, {{one.lower95, one.upper95}}));
-  }
-  return makeTable(std::move(rows));
+                      const DerivedQuantities* quantities) {
+  return makeTable({estimate, deriveFrom(quantities, estimate), {}, {}}, parameters);
 }
 
 /// How the refinement went; the table of its estimate follows where it was accepted.
@@ -129,17 +148,37 @@ std::string describeSearches(const PosteriorEstimate& posterior) {
   return "  sampled on the simulator" + limits + "\n";
 }
 
+/// Whether an unreliable posterior says what happened alone: bounds that are to be widened are not to be
+/// narrowed, nor is that said twice, and what disagrees comes first.
+bool isBrief(const std::vector<std::string>& statuses) {
+  constexpr Notice kOthers[] = {Notice::kAtBounds, Notice::kOutsideTraining, Notice::kMultimodal,
+                                Notice::kTrialsDisagree};
+  return isMismatch(statuses) || std::any_of(std::begin(kOthers), std::end(kOthers),
+                                             [&](Notice notice) { return hasStatus(statuses, notice); });
+}
+
+/// "1 of m, L", of each ridge: so many that it does not determine.
+std::string listUndetermined(const std::vector<Ridge>& ridges, const std::vector<ParameterSpec>& parameters) {
+  std::string text;
+  for (const Ridge& ridge : ridges) {
+    text += fmt::format("{}{} of {}", text.empty() ? "" : " and ", ridge.dimension,
+                        listParameters(ridge, parameters));
+  }
+  return text;
+}
+
 /// The simulator's: how it was found, or why it is not the estimate. The surrogate's: its own table.
-std::string describePosterior(const PosteriorEstimate& posterior,
-                              const std::vector<ParameterSpec>& parameters,
-                              const DerivedQuantities* quantities, bool is_refined, bool is_brief,
-                              const Asked& asked) {
+std::string describePosterior(const InferredMeasurement& inferred, const Estimate& estimate, bool has_values,
+                              const std::vector<ParameterSpec>& parameters) {
+  const PosteriorEstimate& posterior = *inferred.posterior;
   const std::string diagnostics = describeDiagnostics(posterior);
   if (!posterior.isReliable() && posterior.fit) {
-    const std::string why = posterior.message + " (" + diagnostics + ")";
+    const std::string why = fmt::format("{} ({}){}", posterior.message, diagnostics,
+                                        has_values ? "; the values above do not rest on the draws" : "");
     return !posterior.fit->isSimulated() ? ""  // not_simulated says it
-           : is_brief                    ? explainBriefly(Notice::kUnreliable, why)
-                                         : explainUnreliable(why, asked);
+           : isBrief(estimate.statuses)
+               ? explainBriefly(Notice::kUnreliable, why)
+               : explainUnreliable(why, inferred.asked, listUndetermined(inferred.ridges, parameters));
   }
   if (!posterior.isReliable()) {
     return fmt::format("  no posterior: {} ({})\n", posterior.message, diagnostics);
@@ -147,9 +186,10 @@ std::string describePosterior(const PosteriorEstimate& posterior,
   if (posterior.fit) {
     return describeSearches(posterior);
   }
-  return fmt::format("  posterior under the surrogate ({}){}:\n", diagnostics,
-                     is_refined ? ", for its shape; the refined estimate is the more accurate one" : "") +
-         makeTable(posterior.estimate, parameters, quantities);
+  return fmt::format(
+             "  posterior under the surrogate ({}){}:\n", diagnostics,
+             estimate.isRefined() ? ", for its shape; the refined estimate is the more accurate one" : "") +
+         makeTable(posterior.estimate, parameters, inferred.quantities.get());
 }
 
 /// misfits: whether they are not explained, not by a fault of the recording either.
@@ -179,30 +219,6 @@ std::string describeInferredNoise(const SimulatorFit& fit) {
   return text;
 }
 
-/// What is determined where parameters are not one by one; to be derived is not advised of what is.
-std::string describeRidges(const InferredMeasurement& inferred,
-                           const std::vector<ParameterSpec>& parameters) {
-  const auto p = static_cast<Index>(parameters.size());
-  const bool has_best =
-      inferred.posterior && inferred.posterior->fit && inferred.posterior->fit->best.size() >= p;
-  const Eigen::VectorXd point =
-      has_best ? Eigen::VectorXd(inferred.posterior->fit->best.head(p)) : Eigen::VectorXd();
-  std::string text;
-  for (const std::string& advice :
-       adviseOnRidges(inferred.ridges, parameters, inferred.quantities.get(), point)) {
-    text += kIndent + advice + "\n";
-  }
-  return text;
-}
-
-/// Whether an unreliable posterior says what happened alone: bounds that are to be widened are not to be
-/// narrowed, nor is that said twice.
-bool isBrief(const std::vector<std::string>& statuses) {
-  constexpr Notice kOfBounds[] = {Notice::kAtBounds, Notice::kOutsideTraining, Notice::kMultimodal};
-  return isMismatch(statuses) || std::any_of(std::begin(kOfBounds), std::end(kOfBounds),
-                                             [&](Notice notice) { return hasStatus(statuses, notice); });
-}
-
 }  // namespace
 
 std::string describeReading(const InferredMeasurement& inferred, const std::string& begin) {
@@ -219,10 +235,15 @@ std::string describeReading(const InferredMeasurement& inferred, const std::stri
 std::string makeInferenceTable(const InferredMeasurement& inferred,
                                const std::vector<ParameterSpec>& parameters,
                                const std::vector<FeatureInfo>& features) {
-  const Estimate estimate = selectEstimate(inferred);
+  return describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters) +
+         describeEstimate(inferred, selectEstimate(inferred), parameters);
+}
+
+std::string describeEstimate(const InferredMeasurement& inferred, const Estimate& estimate,
+                             const std::vector<ParameterSpec>& parameters) {
   const bool sampled = estimate.method == EstimationMethod::kPosterior;
   const DerivedQuantities* quantities = inferred.quantities.get();
-  std::string text = describeTrust(inferred, parameters, features) + describeMapLimit(inferred, parameters);
+  std::string text;
   if (inferred.posterior && inferred.posterior->fit) {
     text += describeInferredNoise(*inferred.posterior->fit);
   }
@@ -236,10 +257,11 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
   if (inferred.refined && !sampled) {
     text += describeRefined(*inferred.refined);
   }
-  if (estimate.isGiven()) {
-    text += makeTable(estimate, parameters, quantities, listNuisance(inferred.posterior));
+  const std::string table = makeTable(stateValues(inferred, estimate, parameters), parameters);
+  text += table;
+  for (const Ridge& ridge : inferred.ridges) {
+    text += kIndent + describeRidge(ridge, parameters) + "\n";
   }
-  text += describeRidges(inferred, parameters);
   if (estimate.isMultimodal()) {
     text += describeMixture(estimate.mixture, parameters, isMismatch(estimate.statuses));
   }
@@ -248,8 +270,7 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
             makeTable(inferred.by_estimator, parameters, quantities);
   }
   if (inferred.posterior) {
-    text += describePosterior(*inferred.posterior, parameters, quantities, estimate.isRefined(),
-                              isBrief(estimate.statuses), inferred.asked);
+    text += describePosterior(inferred, estimate, !table.empty(), parameters);
   }
   return text;
 }

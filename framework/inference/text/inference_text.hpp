@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,6 +39,12 @@ using LabelledMeasurements = std::vector<std::pair<std::string, const InferredMe
 /// of many of the first four; then what to do.
 std::string explainFaults(const std::string& status, const LabelledMeasurements& recordings);
 
+/// The lines below it. own: of statuses that have another text than that of one recording.
+std::string explainStatuses(const InferredMeasurement& inferred, const Estimate& estimate,
+                            const std::vector<ParameterSpec>& parameters,
+                            const std::vector<FeatureInfo>& features,
+                            const std::map<std::string, std::string>& own = {});
+
 /// How far the map's estimate is from what the measurement allows, where it is estimator_limited; a line
 /// each, or "".
 std::string describeMapLimit(const InferredMeasurement& inferred,
@@ -54,6 +61,16 @@ std::string makeInferenceTable(const InferredMeasurement& inferred,
 std::string makeInferenceCsvHeader(bool refined, bool posterior);
 std::string makeInferenceCsvRows(const InferredMeasurement& inferred,
                                  const std::vector<ParameterSpec>& parameters, bool posterior);
+
+/// The same of an answer from one recording or several: the estimate that is believed, with its statuses,
+/// and what is said beside. p_value: of the test that speaks for or against it.
+std::string describeEstimate(const InferredMeasurement& inferred, const Estimate& estimate,
+                             const std::vector<ParameterSpec>& parameters);
+std::string makeAnswerCsvRows(const InferredMeasurement& inferred, const Estimate& estimate,
+                              const std::string& p_value, const std::vector<ParameterSpec>& parameters,
+                              bool posterior);
+Json makeAnswerJson(const InferredMeasurement& inferred, const Estimate& estimate,
+                    const std::vector<ParameterSpec>& parameters, const std::vector<FeatureInfo>& features);
 
 /// One line of JSON, without a line end (docs/how-to/estimate-from-measurements.md).
 std::string makeInferenceJson(const InferredMeasurement& inferred,

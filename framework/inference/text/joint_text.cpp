@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
 
 #include "framework/base/json/json.hpp"
 #include "framework/base/log/notice.hpp"
-#include "framework/base/text/escape.hpp"
-#include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/joint/joint_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/explain_notice.hpp"
@@ -23,18 +22,39 @@ namespace {
 
 constexpr int kJointDigits = 6, kJointStddevDigits = 3;
 
-/// A parameter's estimate from all recordings: the posterior's, or that of recordings that scatter.
-ScatterEstimate takeEstimate(const JointInference& inferred, std::size_t parameter) {
-  if (!inferred.scatter.empty()) {
-    return inferred.scatter[parameter];
-  }
-  const auto i = static_cast<Index>(parameter);
-  const MatrixXd quantiles = inferred.joint.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
-  return {inferred.joint.mean[i], inferred.joint.stddev[i], quantiles(i, 0), quantiles(i, 1), 0.0};
+/// With what was found and asked later.
+InferredMeasurement takeTogether(const JointInference& inferred) {
+  InferredMeasurement together = inferred.together;
+  together.asked = inferred.asked;
+  together.model_test = inferred.model_test;
+  return together;
 }
 
-bool isStated(const JointInference& inferred) {
-  return inferred.agreement && (!inferred.scatter.empty() || inferred.joint.isReliable());
+/// Of recordings that scatter: independent, with the intervals of so few, within the bounds.
+Estimate combineEstimate(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  const auto p = static_cast<Index>(parameters.size());
+  Estimate estimate{VectorXd(p), VectorXd(p)};
+  estimate.correlation = MatrixXd::Identity(p, p);
+  estimate.limits.lower = calcLowerBounds(parameters);
+  estimate.limits.upper = estimate.limits.lower + calcWidths(parameters);
+  estimate.estimator = "scatter";
+  estimate.interval_factors = {MatrixXd(p, 1), MatrixXd(p, 1)};
+  for (Index i = 0; i < p; ++i) {
+    const ScatterEstimate& one = inferred.scatter[static_cast<std::size_t>(i)];
+    estimate.mean[i] = one.mean;
+    estimate.stddev[i] = one.stddev;
+    estimate.interval_factors.set(i, 0, one.factor);
+  }
+  return estimate;
+}
+
+/// The posterior's, or that of recordings that scatter.
+Estimate selectEstimate(const JointInference& inferred, const InferredMeasurement& together,
+                        const std::vector<ParameterSpec>& parameters) {
+  Estimate estimate =
+      inferred.scatter.empty() ? selectEstimate(together) : combineEstimate(inferred, parameters);
+  estimate.statuses = listStatuses(inferred, static_cast<Index>(parameters.size()));
+  return estimate;
 }
 
 /// "0.34", "< 0.0005" where the simulations can say no more.
@@ -64,26 +84,19 @@ std::string describeContradictions(const JointInference& inferred,
   return text;
 }
 
-/// misfits: the remedy has been given for these.
-std::string describeAgreement(const JointInference& inferred, const std::vector<ParameterSpec>& parameters,
-                              bool misfits) {
-  const std::size_t count = inferred.alone.size();
-  const Agreement& agreement = *inferred.agreement;
-  if (!inferred.disagrees()) {
-    return fmt::format("  The {} recordings agree ({}).\n", count, describeLevel(agreement));
-  }
-  const std::string text =
-      misfits ? explainBriefly(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess)
-              : explainNotice(Notice::kTrialsDisagree, count, describeLevel(agreement), agreement.excess);
-  return text + describeContradictions(inferred, parameters) +
+std::string explainDisagreement(const JointInference& inferred,
+                                const std::vector<ParameterSpec>& parameters) {
+  return explainNotice(Notice::kTrialsDisagree, inferred.alone.size(), describeLevel(*inferred.agreement),
+                       inferred.agreement->excess) +
+         describeContradictions(inferred, parameters) +
          (inferred.scatter.empty() ? "" : "  The intervals below cover the scatter between recordings.\n");
 }
 
 /// Of recordings that the model does not fit each by itself.
-std::string describeMisfits(const JointInference& inferred) {
+std::string explainMisfits(const JointInference& inferred) {
   std::vector<std::string> labels;
   for (const RecordingInference& one : inferred.alone) {
-    if (isMismatch(selectEstimate(one.inferred).statuses)) {
+    if (isMismatch(listStatuses(one.inferred))) {
       labels.push_back(one.label);
     }
   }
@@ -93,16 +106,23 @@ std::string describeMisfits(const JointInference& inferred) {
                                                     labels.size() == 1 ? "s" : ""));
 }
 
-std::string makeEstimateTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  std::vector<std::vector<std::string>> rows{{"parameter", "unit", "mean", "sd", "95 % interval"}};
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const ScatterEstimate estimate = takeEstimate(inferred, p);
-    rows.push_back(
-        {parameters[p].name.text, parameters[p].unit, toShortText(estimate.mean, kJointDigits),
-         toShortText(estimate.stddev, kJointStddevDigits),
-         toShortText(estimate.lower, kJointDigits) + " .. " + toShortText(estimate.upper, kJointDigits)});
+/// What several recordings alone have to be said against them, by status.
+std::map<std::string, std::string> explainSeveral(const JointInference& inferred,
+                                                  const std::vector<ParameterSpec>& parameters) {
+  std::map<std::string, std::string> texts{
+      {getNotice(Notice::kModelMismatch).name, explainMisfits(inferred)},
+      {getNotice(Notice::kNotSimulated).name, explainNotice(Notice::kNotSimulated, inferred.joint.message)}};
+  if (inferred.disagrees()) {
+    texts[getNotice(Notice::kTrialsDisagree).name] = explainDisagreement(inferred, parameters);
   }
-  return alignRows(rows, rows.front().size(), "  ");
+  LabelledMeasurements recordings;
+  for (const RecordingInference& one : inferred.alone) {
+    recordings.emplace_back(one.label, &one.inferred);
+  }
+  for (const std::string& fault : listRecordingFaults(inferred.alone)) {
+    texts[fault] = explainFaults(fault, recordings);
+  }
+  return texts;
 }
 
 std::string makeAloneTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
@@ -110,10 +130,9 @@ std::string makeAloneTable(const JointInference& inferred, const std::vector<Par
   for (const ParameterSpec& parameter : parameters) {
     rows.front().push_back(parameter.name.text);
   }
-  for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
-    const RecordingInference& one = inferred.alone[k];
-    rows.push_back({one.label + (one.posterior.is_linear ? ", linear" : ""),
-                    selectEstimate(one.inferred).statuses.front()});
+  for (const RecordingInference& one : inferred.alone) {
+    rows.push_back(
+        {one.label + (one.posterior.is_linear ? ", linear" : ""), listStatuses(one.inferred).front()});
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Index>(p);
       rows.back().push_back(one.posterior.isReliable()
@@ -125,43 +144,24 @@ std::string makeAloneTable(const JointInference& inferred, const std::vector<Par
   return alignRows(rows, rows.front().size(), "  ");
 }
 
-Json makeEstimateJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  Json json = Json::object();
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    const ScatterEstimate estimate = takeEstimate(inferred, p);
-    json[parameters[p].name.text] = {{"mean", estimate.mean},
-                                     {"sd", estimate.stddev},
-                                     {"lower", estimate.lower},
-                                     {"upper", estimate.upper},
-                                     {"unit", parameters[p].unit}};
-    if (!inferred.scatter.empty()) {
-      json[parameters[p].name.text]["scatter"] = estimate.scatter;
-    }
+Json makeAgreementJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
+  Json json{{"agrees", !inferred.disagrees()},
+            {"p_value", inferred.agreement->p_value},
+            {"excess", inferred.agreement->excess},
+            {"contradictions", Json::array()}};
+  for (const Contradiction& one : inferred.contradictions) {
+    json["contradictions"].push_back({{"parameter", parameters[one.parameter].name.text},
+                                      {"first", inferred.alone[one.first].label},
+                                      {"second", inferred.alone[one.second].label},
+                                      {"distance", one.distance}});
   }
   return json;
-}
-
-/// Of the parameters in their units: the posterior's, or the variances of recordings that scatter.
-Json makeJointCovariance(const JointInference& inferred, std::size_t count) {
-  Json rows = Json::array();
-  for (std::size_t i = 0; i < count; ++i) {
-    Json row = Json::array();
-    for (std::size_t j = 0; j < count; ++j) {
-      const double variance =
-          i == j && !inferred.scatter.empty() ? inferred.scatter[i].stddev * inferred.scatter[i].stddev : 0.0;
-      row.push_back(inferred.scatter.empty()
-                        ? inferred.joint.covariance(static_cast<Index>(i), static_cast<Index>(j))
-                        : variance);
-    }
-    rows.push_back(row);
-  }
-  return rows;
 }
 
 Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
   Json trials = Json::array();
   for (const RecordingInference& recording : inferred.alone) {
-    Json one = parseJson(makeInferenceJson(recording.inferred, parameters, {}));
+    Json one = makeAnswerJson(recording.inferred, selectEstimate(recording.inferred), parameters, {});
     one["label"] = recording.label;
     one["is_linear"] = recording.posterior.is_linear;
     trials.push_back(one);
@@ -169,57 +169,27 @@ Json makeTrialsJson(const JointInference& inferred, const std::vector<ParameterS
   return trials;
 }
 
-std::string describeFaults(const JointInference& inferred, const std::vector<std::string>& listed) {
-  LabelledMeasurements recordings;
-  for (const RecordingInference& one : inferred.alone) {
-    recordings.emplace_back(one.label, &one.inferred);
-  }
-  std::string text;
-  for (const std::string& fault : listRecordingFaults(inferred.alone)) {
-    const bool is_said =
-        std::find(listed.begin(), listed.end(), fault) != listed.end() && !isAdvisedElse(fault, listed);
-    text += is_said ? explainFaults(fault, recordings) : "";
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string makeJointTable(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  const std::vector<std::string> listed = listStatuses(inferred, static_cast<Index>(parameters.size()));
-  const std::string statuses = joinStatuses(listed, ", ");
-  std::string text = fmt::format("{} recordings together: {}\n", inferred.alone.size(), statuses);
+  const InferredMeasurement together = takeTogether(inferred);
+  const Estimate estimate = selectEstimate(inferred, together, parameters);
+  std::string text =
+      fmt::format("{} recordings together: {}\n", inferred.alone.size(),
+                  joinStatuses(estimate.statuses, ", ")) +
+      explainStatuses(together, estimate, parameters, {}, explainSeveral(inferred, parameters));
   if (!inferred.agreement) {
-    return fillCommands(text + explainNotice(Notice::kNotSimulated, inferred.joint.message), inferred.asked);
+    return text;
   }
-  if (listed == std::vector<std::string>{getNotice(Notice::kOk).name}) {
-    text += describeUnnoticed(inferred.model_test, parameters);
-  } else if (hasStatus(listed, Notice::kMissingTerm)) {
-    text += fillCommands(explainMissingTerm(*inferred.findMissing(), parameters), inferred.asked);
+  if (!inferred.disagrees()) {
+    text += fmt::format("  The {} recordings agree ({}).\n", inferred.alone.size(),
+                        describeLevel(*inferred.agreement));
   }
-  // each recording alone is tested at a level of its own: what all together take for chance is not said
-  const bool misfits = isMismatch(listed);
-  if (!inferred.beyond.empty()) {
-    text += misfits || isAdvisedElse(getNotice(Notice::kAtBounds).name, listed)
-                ? explainBriefly(Notice::kAtBounds, listNames(inferred.beyond))
-                : explainNotice(Notice::kAtBounds, listNames(inferred.beyond));
-  }
-  text += fillCommands(
-      (misfits ? describeMisfits(inferred) : "") + describeAgreement(inferred, parameters, misfits),
-      inferred.asked);
-  text += describeFaults(inferred, listed);
-  if (isStated(inferred)) {
-    text += makeEstimateTable(inferred, parameters);
-  } else {
-    text += misfits || inferred.disagrees() || !inferred.beyond.empty()
-                ? explainBriefly(Notice::kUnreliable, inferred.joint.message)
-                : explainUnreliable(inferred.joint.message, inferred.asked);
-  }
-  text += makeAloneTable(inferred, parameters);
+  text += describeEstimate(together, estimate, parameters) + makeAloneTable(inferred, parameters);
   for (const RecordingInference& one : inferred.alone) {
     text += describeReading(one.inferred, "  " + one.label + ": ");
   }
-  return text + fmt::format("  sampled on the simulator: {} simulations\n", inferred.simulations);
+  return text;
 }
 
 std::string makeJointCsvRows(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
@@ -227,49 +197,26 @@ std::string makeJointCsvRows(const JointInference& inferred, const std::vector<P
   for (const RecordingInference& one : inferred.alone) {
     text += makeInferenceCsvRows(one.inferred, parameters, false);
   }
-  const std::string statuses =
-      fmt::format("{}", fmt::join(listStatuses(inferred, static_cast<Index>(parameters.size())), " "));
-  for (std::size_t p = 0; p < parameters.size(); ++p) {
-    std::string numbers = ",,,";
-    if (isStated(inferred)) {
-      const ScatterEstimate estimate = takeEstimate(inferred, p);
-      numbers = toText(estimate.mean) + "," + toText(estimate.stddev) + "," + toText(estimate.lower) + "," +
-                toText(estimate.upper);
-    }
-    text += fmt::format("joint,,{},{},{},{},{},posterior\n", escapeCsv(parameters[p].name.text),
-                        escapeCsv(parameters[p].unit), numbers, statuses,
-                        inferred.agreement ? toText(inferred.agreement->p_value) : "");
-  }
-  return text;
+  const InferredMeasurement together = takeTogether(inferred);
+  return text + makeAnswerCsvRows(together, selectEstimate(inferred, together, parameters),
+                                  inferred.agreement ? toText(inferred.agreement->p_value) : "", parameters,
+                                  false);
 }
 
 std::string makeJointJson(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
-  const std::vector<std::string> statuses = listStatuses(inferred, static_cast<Index>(parameters.size()));
-  Json json{{"source", "joint"},
-            {"status", statuses.front()},
-            {"statuses", statuses},
-            {"method", inferred.scatter.empty() ? "posterior" : "scatter"}};
-  if (isStated(inferred)) {
-    json["parameters"] = makeEstimateJson(inferred, parameters);
-    json["covariance"] = makeJointCovariance(inferred, parameters.size());
-  } else {
+  const InferredMeasurement together = takeTogether(inferred);
+  Json json = makeAnswerJson(together, selectEstimate(inferred, together, parameters), parameters, {});
+  for (std::size_t p = 0; p < inferred.scatter.size(); ++p) {
+    json["parameters"][parameters[p].name.text]["scatter"] = inferred.scatter[p].scatter;
+  }
+  if (!inferred.joint.message.empty()) {
     json["message"] = inferred.joint.message;
   }
   json["effective_sample_size"] = inferred.joint.effective_sample_size;
   json["pareto_shape"] = inferred.joint.pareto_shape;
   if (inferred.agreement) {
-    json["agreement"] = {{"agrees", !inferred.disagrees()},
-                         {"p_value", inferred.agreement->p_value},
-                         {"excess", inferred.agreement->excess},
-                         {"contradictions", Json::array()}};
-    for (const Contradiction& one : inferred.contradictions) {
-      json["agreement"]["contradictions"].push_back({{"parameter", parameters[one.parameter].name.text},
-                                                     {"first", inferred.alone[one.first].label},
-                                                     {"second", inferred.alone[one.second].label},
-                                                     {"distance", one.distance}});
-    }
+    json["agreement"] = makeAgreementJson(inferred, parameters);
   }
-  addModelTest(inferred.model_test, parameters, json);
   json["trials"] = makeTrialsJson(inferred, parameters);
   json["simulations"] = inferred.simulations;
   return formatJson(json);

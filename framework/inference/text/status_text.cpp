@@ -417,12 +417,22 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
   for (const std::string& against : inferred.against) {
     text += "  " + against + "\n";
   }
+  return text + explainStatuses(inferred, estimate, parameters, features);
+}
+
+std::string explainStatuses(const InferredMeasurement& inferred, const Estimate& estimate,
+                            const std::vector<ParameterSpec>& parameters,
+                            const std::vector<FeatureInfo>& features,
+                            const std::map<std::string, std::string>& own) {
+  std::string text;
   const bool misfits = isMismatch(estimate.statuses);
   if (estimate.statuses == std::vector<std::string>{getNotice(Notice::kOk).name}) {
     text += describeUnnoticed(inferred.model_test, parameters);
   }
   for (const std::string& status : estimate.statuses) {
-    const std::string explained = explainStatus(status, inferred, estimate, parameters, features);
+    const auto found = own.find(status);
+    const std::string explained =
+        found != own.end() ? found->second : explainStatus(status, inferred, estimate, parameters, features);
     const bool is_first = status == getNotice(Notice::kModelMismatch).name ||
                           (status == getNotice(Notice::kAtBounds).name && inferred.fault.empty() &&
                            areAllAtBounds(inferred, parameters));

@@ -25,7 +25,7 @@ TEST(Scatter, OfEquallyKnownValuesIsTheirSpread) {
   EXPECT_NEAR(estimate.mean, 3.0, 1e-12);
   EXPECT_NEAR(estimate.scatter * estimate.scatter, variance - 1e-4, 1e-9);
   EXPECT_NEAR(estimate.stddev, std::sqrt(variance / 4.0), 1e-9);
-  EXPECT_NEAR(estimate.upper - estimate.mean, 3.182446 * estimate.stddev, 1e-5);  // t of 3 degrees
+  EXPECT_NEAR(estimate.factor.of95, 3.182446, 1e-5);  // t of 3 degrees
 }
 
 TEST(Scatter, IntervalsHoldWithFewRecordings) {
@@ -38,7 +38,7 @@ TEST(Scatter, IntervalsHoldWithFewRecordings) {
     const Eigen::Vector4d stddevs(0.1, 0.2, 0.1, 0.3);
     const VectorXd values = normals.head(4) + stddevs.cwiseProduct(normals.tail(4));
     const ScatterEstimate estimate = combineScattered(values, stddevs);
-    holds += estimate.lower < 0.0 && 0.0 < estimate.upper ? 1 : 0;
+    holds += std::abs(estimate.mean) < estimate.factor.of95 * estimate.stddev ? 1 : 0;
   }
   EXPECT_NEAR(static_cast<double>(holds) / kTests, 0.95, 0.02);
 }

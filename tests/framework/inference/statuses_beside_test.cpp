@@ -303,6 +303,8 @@ JointInference makeJoint() {
   joint.agreement.emplace();
   joint.joint.mean = joint.joint.stddev = VectorXd::Ones(2);
   joint.joint.message = "few draws";
+  joint.together = makeOfPosterior();
+  joint.together.posterior->message = "few draws";
   joint.asked.draws = 8000;
   return joint;
 }
@@ -311,7 +313,11 @@ TEST(StatusesBesideEachOther, DoNotContradictOfRecordingsTogether) {
   const std::map<std::string, std::function<void(JointInference&)>> causes{
       {"model_mismatch",
        [](JointInference& joint) { joint.alone[0].inferred.posterior->fit->test.chi_square_p = 0.0; }},
-      {"at_bounds", [](JointInference& joint) { joint.beyond = {"k"}; }},
+      {"at_bounds",
+       [](JointInference& joint) {
+         joint.joint.beyond = {0};
+         joint.together.posterior->fit->beyond = {"k"};
+       }},
       {"trials_disagree", [](JointInference& joint) { joint.agreement->p_value = 0.0; }},
       {"unreliable", [](JointInference&) {}}};
   for (const auto& [first, cause] : causes) {

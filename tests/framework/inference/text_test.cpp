@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "framework/base/json/json.hpp"
 #include "framework/inference/asked.hpp"
 #include "framework/inference/text/explain_notice.hpp"
 #include "framework/inference/text/inference_text.hpp"
@@ -95,6 +96,68 @@ TEST(Remedies, OfStatusesBesideEachOtherDoNotContradict) {
   outside.trust->statuses = {TrustStatus::kOutsideTraining, TrustStatus::kAtBounds};
   text = describeTrust(outside, {k}, {});
   EXPECT_EQ(count(text, "Widen"), 1U) << text;
+}
+
+/// An unreliable posterior of m and L, of which three places show the product 2 +- .1 alone, and of c, 0.4 +-
+/// .02.
+InferredMeasurement makeValley(const std::vector<ParameterSpec>& parameters) {
+  SimulatorPosterior posterior;
+  posterior.message = "few draws";
+  constexpr Eigen::Index kPlaces = 3, kEach = 2;
+  posterior.floor.points.resize(3, kPlaces * kEach);
+  posterior.floor.weights = Eigen::VectorXd::Constant(kPlaces * kEach, 1.0 / (kPlaces * kEach));
+  for (Eigen::Index i = 0; i < kPlaces * kEach; ++i) {
+    const double m = 1.0 + static_cast<double>(i / kEach), side = i % kEach == 0 ? 1.0 : -1.0;
+    posterior.floor.points.col(i) << m, (2.0 + 0.1 * side) / m, 0.4 + 0.02 * side;
+    posterior.floor.places.push_back(static_cast<int>(i / kEach));
+  }
+  InferredMeasurement inferred;
+  inferred.source = "m.csv";
+  inferred.posterior = makePosteriorEstimate(posterior, parameters, 3, {});
+  inferred.posterior->fit->degrees = 10.0;
+  Ridge ridge{{0, 1}, 1, {{{Eigen::Vector3i(1, 1, 0)}, {1.0}, 0.0}}};
+  inferred.ridges = {ridge};
+  return inferred;
+}
+
+std::vector<ParameterSpec> makeThree() {
+  std::vector<ParameterSpec> parameters(3);
+  const char* names[] = {"m", "L", "c"};
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    parameters[i].name.text = names[i];
+    parameters[i].bounds = {0.1, 5.0, {}};
+  }
+  return parameters;
+}
+
+TEST(UnreliablePosteriors, StillSayWhatIsDetermined) {
+  const std::vector<ParameterSpec> parameters = makeThree();
+  const InferredMeasurement inferred = makeValley(parameters);
+  const std::string text = makeInferenceTable(inferred, parameters, {});
+  EXPECT_NE(text.find("  m * L            2     0.1"), std::string::npos) << text;
+  EXPECT_NE(text.find("  c                0.4   0.02"), std::string::npos) << text;
+  EXPECT_EQ(text.find("  m          "), std::string::npos) << text;
+  EXPECT_NE(text.find("Fix 1 of m, L at known values"), std::string::npos) << text;
+  EXPECT_EQ(text.find("--posterior"), std::string::npos) << text;
+  const Json json = parseJson(makeInferenceJson(inferred, parameters, {}));
+  EXPECT_EQ(json["status"], "unreliable");
+  EXPECT_NEAR(json["identified"][0]["mean"].get<double>(), 2.0, 1e-12);
+  EXPECT_NEAR(json["identified"][0]["sd"].get<double>(), 0.1, 1e-12);
+  EXPECT_NEAR(json["parameters"]["c"]["sd"].get<double>(), 0.02, 1e-12);
+  EXPECT_FALSE(json["parameters"].contains("m"));
+  const std::string csv = makeInferenceCsvRows(inferred, parameters, false);
+  EXPECT_NE(csv.find("m.csv,0,m,,,,,,unreliable"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("m.csv,0,m * L,,2"), std::string::npos) << csv;
+}
+
+TEST(UnreliablePosteriors, SayNothingOfCombinationsThatChangeAlongTheValley) {
+  const std::vector<ParameterSpec> parameters = makeThree();
+  InferredMeasurement inferred = makeValley(parameters);
+  inferred.ridges[0].combinations = {{{Eigen::Vector3i(1, 2, 0)}, {1.0}, 0.0}};
+  const Json json = parseJson(makeInferenceJson(inferred, parameters, {}));
+  EXPECT_EQ(json["identified"][0]["expression"], "m * L^2");
+  EXPECT_FALSE(json["identified"][0].contains("mean"));
+  EXPECT_EQ(makeInferenceTable(inferred, parameters, {}).find("\n  m * L^2 "), std::string::npos);
 }
 
 }  // namespace

@@ -164,11 +164,12 @@ AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, b
 /// hardly a step leads anywhere, and draws of its surroundings look as good as those of all the valley.
 MatrixXd listWalkStarts(MisfitSurface& surface, const std::vector<Basin>& basins, std::uint64_t seed) {
   constexpr Index kChains = 48, kOfBasins = 8;
-  const MatrixXd places = findValleyPlaces(surface, basins, seed);
-  const Index spread = places.cols() > 0 ? kChains - kOfBasins : 0;
+  const std::vector<LocalSurface> places = findValleyPlaces(surface, basins, seed);
+  const auto count = static_cast<Index>(places.size());
+  const Index spread = count > 0 ? kChains - kOfBasins : 0;
   MatrixXd starts(surface.getDimensions(), kChains);
   for (Index k = 0; k < kChains; ++k) {
-    starts.col(k) = k < spread ? places.col(k * places.cols() / spread % places.cols())
+    starts.col(k) = k < spread ? places[static_cast<std::size_t>(k * count / spread % count)].at
                                : basins[static_cast<std::size_t>(k) % basins.size()].local.at;
   }
   return starts;

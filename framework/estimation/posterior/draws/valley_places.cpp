@@ -1,5 +1,6 @@
 #include "framework/estimation/posterior/draws/valley_places.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/estimation/posterior/basins/search_team.hpp"
@@ -29,7 +30,8 @@ VectorXd startFromNearest(const std::vector<Basin>& basins, Index j, double valu
 
 }  // namespace
 
-MatrixXd findValleyPlaces(MisfitSurface& surface, const std::vector<Basin>& basins, std::uint64_t seed) {
+std::vector<LocalSurface> findValleyPlaces(MisfitSurface& surface, const std::vector<Basin>& basins,
+                                           std::uint64_t seed) {
   constexpr int kIterations = 8;
   constexpr double kBears = 25.0;  // as of basins: e^-12.5 of the density
   const Index u = surface.getDimensions(), values = static_cast<Index>(std::size(kValues));
@@ -49,14 +51,12 @@ MatrixXd findValleyPlaces(MisfitSurface& surface, const std::vector<Basin>& basi
   }
   SearchTeam team(surface, starts, held);
   team.run(kIterations);
-  MatrixXd places(u, starts.cols());
-  Index count = 0;
-  for (const LocalSurface& end : team.listEnds()) {
-    if (end.misfit < basins.front().local.misfit + kBears) {
-      places.col(count++) = end.at;
-    }
-  }
-  return places.leftCols(count);
+  std::vector<LocalSurface> places = team.listEnds();
+  const auto bears = [&](const LocalSurface& end) {
+    return end.misfit < basins.front().local.misfit + kBears;
+  };
+  places.erase(std::stable_partition(places.begin(), places.end(), bears), places.end());
+  return places;
 }
 
 }  // namespace twinmap

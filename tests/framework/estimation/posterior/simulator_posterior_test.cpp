@@ -266,6 +266,10 @@ TEST(SimulatorPosterior, ShowsTheFloorOfItsValleyWhereTooFewDrawsStandForIt) {
   for (const auto& place : posterior.places.colwise()) {
     EXPECT_NEAR(place[0] * place[1], features.mean(), 5.0 * 0.3 / std::sqrt(10.0));  // chi-square 25 above
   }
+  const VectorXd product = posterior.floor.points.row(0).cwiseProduct(posterior.floor.points.row(1));
+  EXPECT_TRUE(posterior.floor.determine(product));
+  EXPECT_NEAR(posterior.floor.weights.dot(product), features.mean(), 0.2 * 0.3 / std::sqrt(10.0));
+  EXPECT_FALSE(posterior.floor.determine(posterior.floor.points.row(0)));
 }
 
 TEST(SimulatorPosterior, HoldsKnownInputs) {

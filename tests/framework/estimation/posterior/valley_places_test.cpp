@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/estimation/posterior/draws/floor_draws.hpp"
 #include "framework/estimation/posterior/draws/posterior_draws.hpp"
 #include "tests/framework/estimation/posterior/surface.hpp"
 
@@ -21,19 +22,55 @@ TEST(ValleyPlaces, LieOnAllOfABentFloorWhereverItsDeepestPointIs) {
         return makeVector({0.05 * x[0], 8.0 * (x[1] - x[0] * x[0])});
       },
       testing::makeParameters(2, -1.0, 1.0), 0.1, makeVector({-1.0, 1.0}));
-  const MatrixXd places = findValleyPlaces(banana.surface, banana.makeBasins(makeVector({-1.0, 1.0})), 1);
-  EXPECT_LT(places.row(0).minCoeff(), -0.75);
-  EXPECT_GT(places.row(0).maxCoeff(), 0.75);
-  for (const auto& place : places.colwise()) {
-    EXPECT_NEAR(place[1], place[0] * place[0], 0.1 / 8.0);  // one standard deviation of the noise
+  const auto places = findValleyPlaces(banana.surface, banana.makeBasins(makeVector({-1.0, 1.0})), 1);
+  double first = 0.0, last = 0.0;
+  for (const LocalSurface& place : places) {
+    first = std::min(first, place.at[0]);
+    last = std::max(last, place.at[0]);
+    EXPECT_NEAR(place.at[1], place.at[0] * place.at[0], 0.1 / 8.0);  // one standard deviation of the noise
   }
+  EXPECT_LT(first, -0.75);
+  EXPECT_GT(last, 0.75);
 }
 
 TEST(ValleyPlaces, AreNoneThatDoNotFit) {
   Surface known(
       2, [](const VectorXd& x) { return VectorXd(x); }, testing::makeParameters(2, -1.0, 1.0), 0.01,
       makeVector({0.3, 0.1}));
-  EXPECT_EQ(findValleyPlaces(known.surface, known.makeBasins(makeVector({0.3, 0.1})), 1).cols(), 0);
+  EXPECT_TRUE(findValleyPlaces(known.surface, known.makeBasins(makeVector({0.3, 0.1})), 1).empty());
+}
+
+/// A bent valley, and a parameter beside it that is none: the distance from the valley is normal, the
+/// parameter is half of that, cut off at its bound.
+TEST(DrawsAcrossValleys, SayWhatIsDeterminedAndHowWell) {
+  constexpr double kNoise = 0.1, kAcross = kNoise / 8.0, kBeside = kNoise / 5.0;
+  std::vector<ParameterSpec> parameters = testing::makeParameters(3, -1.0, 1.0);
+  parameters[2].bounds.lower = 0.0;
+  Surface banana(
+      3,
+      [](const VectorXd& x) {
+        return makeVector({0.05 * x[0], 8.0 * (x[1] - x[0] * x[0]), 5.0 * x[2]});
+      },
+      parameters, kNoise, makeVector({-1.0, 1.0, 0.0}));
+  const std::vector<LocalSurface> places =
+      findValleyPlaces(banana.surface, banana.makeBasins(makeVector({-1.0, 1.0, -1.0})), 1);
+  const FloorDraws draws = drawAcrossValleys(places, banana.coordinates, 1);
+  ASSERT_TRUE(draws.isGiven());
+  const auto expect = [&](const VectorXd& values, double mean, double stddev) {
+    EXPECT_TRUE(draws.determine(values));
+    const double found = draws.weights.dot(values);
+    EXPECT_NEAR(found, mean, 0.1 * stddev);
+    EXPECT_NEAR(std::sqrt(draws.weights.dot((values.array() - found).square().matrix())), stddev,
+                0.08 * stddev);
+  };
+  const VectorXd bend = draws.points.row(0).cwiseAbs2();
+  expect(draws.points.row(1).transpose() - bend, 0.0, kAcross);
+  expect(draws.points.row(2), kBeside * std::sqrt(2.0 / M_PI), kBeside * std::sqrt(1.0 - 2.0 / M_PI));
+  for (const Index along : {0, 1}) {
+    EXPECT_FALSE(draws.determine(draws.points.row(along))) << along;
+  }
+  const FloorDraws of_one = drawAcrossValleys({places.front()}, banana.coordinates, 1);
+  EXPECT_FALSE(of_one.determine(of_one.points.row(2)));  // one place shows no valley
 }
 
 /// Two bent ridges that meet in a corner of six dimensions, where chi-square is least: draws about it alone
