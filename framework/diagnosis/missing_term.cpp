@@ -83,11 +83,13 @@ bool explains(const CurrentFit& current, const RecordedFeatures& recordings, con
   return testResidual(residual, degrees, problem.listInfos()).calcPValue() >= kMismatchLevel;
 }
 
-MissingTerm describe(const RankedTerm& best, const std::vector<RankedTerm>& ranked) {
+/// chi_square: without it.
+MissingTerm describe(const RankedTerm& best, const std::vector<RankedTerm>& ranked, double chi_square) {
   const TermFinding& found = best.finding;
   MissingTerm missing{
       found.candidate.term, found.candidate.meaning, found.candidate.unit, found.estimate, found.stddev,
       found.share,          found.log_evidence,      found.shifts};
+  missing.share_of_all = 1.0 - found.chi_square / chi_square;
   for (const RankedTerm& one : ranked) {
     if (&one != &best && one.finding.fitted &&
         found.log_evidence - one.finding.log_evidence < kTiedEvidence) {
@@ -116,7 +118,22 @@ std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored, Index
   return worst;
 }
 
-/// The term that would explain a misfit.
+/// The term of some kinds that would explain a misfit; `explains` where noise remains with it.
+std::optional<MissingTerm> explainMisfit(const CurrentFit& current, const RecordedFeatures& recording,
+                                         CandidateKinds kinds) {
+  const ScoredCandidates scored = scoreCandidates(current.experiment, recording, current.point, kinds);
+  const auto p = static_cast<Index>(current.experiment.model.parameters.size());
+  std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
+  const RankedTerm* best = fitBest(current, recording, scored, p, ranked);
+  if (best == nullptr) {
+    return {};
+  }
+  MissingTerm missing = describe(*best, ranked, current.chi_square);
+  missing.explains = explains(current, recording, best->fitted);
+  return missing;
+}
+
+/// Those with states, which take time, are asked where no other explains all.
 std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                                          const VectorXd& start) {
   const CurrentFit current = fitFrom(experiment, recording, start);
@@ -125,18 +142,12 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
   if (current.point.size() == 0 || current.chi_square > kGross * current.degrees) {
     return {};
   }
-  const ScoredCandidates scored =
-      scoreCandidates(current.experiment, recording, current.point, CandidateKinds::kWithoutStates);
-  const auto p = static_cast<Index>(experiment.model.parameters.size());
-  std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
-  const RankedTerm* best = fitBest(current, recording, scored, p, ranked);
-  if (best == nullptr) {
-    return {};
+  std::optional<MissingTerm> missing = explainMisfit(current, recording, CandidateKinds::kWithoutStates);
+  if (!missing || !missing->explains) {
+    missing = explainMisfit(current, recording, CandidateKinds::kAll);
   }
-  MissingTerm missing = describe(*best, ranked);
-  if (hasUnknownNoise(experiment.noise)) {
-    missing.share =  // what is noise is not known: of the whole residual
-        1.0 - best->finding.chi_square / current.chi_square;
+  if (missing && hasUnknownNoise(experiment.noise)) {
+    missing->share = missing->share_of_all;  // what is noise is not known
   }
   return missing;
 }
@@ -164,7 +175,7 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
       !(best->finding.shifts.cwiseAbs().maxCoeff() > 1.0)) {
     return test;
   }
-  MissingTerm missing = describe(*best, ranked);
+  MissingTerm missing = describe(*best, ranked, current.chi_square);
   const bool leaves_noise = explains(current, recordings, best->fitted);
   RecordedFeatures stated = recordings;
   stated.noise.clear();

@@ -27,6 +27,7 @@ struct MissingTerm {
   Eigen::VectorXd shifts{};           ///< p: how the parameters move with it, in their sds without
   std::vector<std::string> rivals{};  ///< terms that the measurement does not tell from it
   bool explains = false;              ///< whether what remains with it is noise as it is stated
+  double share_of_all = 0.0;          ///< of the whole misfit that it takes away
 };
 
 /// The term that may move a parameter most without being noticed.

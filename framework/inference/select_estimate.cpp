@@ -199,7 +199,8 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
 
 void dropExcuses(std::vector<std::string>& statuses) {
   const auto is_excuse = [](const std::string& status) {
-    return status == "noise_coloured" || status == "sensor_offset" || status == "noise_larger";
+    return status == "noise_coloured" || status == "sensor_offset" || status == "noise_larger" ||
+           status == "clock_fault";
   };
   statuses.erase(std::remove_if(statuses.begin(), statuses.end(), is_excuse), statuses.end());
 }

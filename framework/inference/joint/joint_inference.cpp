@@ -240,7 +240,7 @@ std::vector<std::string> listStatuses(const JointInference& inferred, Index para
   }
   std::vector<std::string> faults = listRecordingFaults(inferred.alone);
   const MissingTerm* missing = inferred.findMissing();
-  if (missing != nullptr && missing->explains && !inferred.disagrees()) {
+  if (missing != nullptr && missing->explains) {
     dropExcuses(faults);
   }
   statuses.insert(statuses.end(), faults.begin(), faults.end());

@@ -84,11 +84,20 @@ std::string describeContradictions(const JointInference& inferred,
   return text;
 }
 
-std::string explainDisagreement(const JointInference& inferred,
-                                const std::vector<ParameterSpec>& parameters) {
+/// "  coulomb.x would explain 93 % of all that is beyond noise (dry friction: ...)"
+std::string describeMissing(const JointInference& inferred) {
+  const MissingTerm* missing = inferred.findMissing();
+  return missing != nullptr ? fmt::format("  {} would explain {:.0f} % of all that is beyond noise ({})\n",
+                                          missing->term, 100.0 * missing->share, missing->meaning)
+                            : "";
+}
+
+/// misfits: what is missing is said of these.
+std::string explainDisagreement(const JointInference& inferred, const std::vector<ParameterSpec>& parameters,
+                                bool misfits) {
   return explainNotice(Notice::kTrialsDisagree, inferred.alone.size(), describeLevel(*inferred.agreement),
                        inferred.agreement->excess) +
-         describeContradictions(inferred, parameters) +
+         describeContradictions(inferred, parameters) + (misfits ? "" : describeMissing(inferred)) +
          (inferred.scatter.empty() ? "" : "  The intervals below cover the scatter between recordings.\n");
 }
 
@@ -103,17 +112,20 @@ std::string explainMisfits(const JointInference& inferred) {
   return labels.empty() ? ""
                         : explainNotice(Notice::kModelMismatch,
                                         fmt::format("{} misfit{} already alone", fmt::join(labels, ", "),
-                                                    labels.size() == 1 ? "s" : ""));
+                                                    labels.size() == 1 ? "s" : "")) +
+                              describeMissing(inferred);
 }
 
 /// What several recordings alone have to be said against them, by status.
 std::map<std::string, std::string> explainSeveral(const JointInference& inferred,
                                                   const std::vector<ParameterSpec>& parameters) {
+  const std::string misfits = explainMisfits(inferred);
   std::map<std::string, std::string> texts{
-      {getNotice(Notice::kModelMismatch).name, explainMisfits(inferred)},
+      {getNotice(Notice::kModelMismatch).name, misfits},
       {getNotice(Notice::kNotSimulated).name, explainNotice(Notice::kNotSimulated, inferred.joint.message)}};
   if (inferred.disagrees()) {
-    texts[getNotice(Notice::kTrialsDisagree).name] = explainDisagreement(inferred, parameters);
+    texts[getNotice(Notice::kTrialsDisagree).name] =
+        explainDisagreement(inferred, parameters, !misfits.empty());
   }
   LabelledMeasurements recordings;
   for (const RecordingInference& one : inferred.alone) {
