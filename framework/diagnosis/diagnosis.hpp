@@ -61,7 +61,7 @@ struct Diagnosis {
 
   /// Whether something is left unexplained, or a random force explains more than the terms that were found.
   bool isIncomplete() const { return !after.isExplained() || process; }
-  /// "model_incomplete" where it is; "noise_coloured" where that explains all; "unreliable" where the terms
+  /// "model_incomplete" where it is, "noise_coloured" where that explains all. "unreliable" where the terms
   /// explain all, but no posterior with them is to be believed; else "ok".
   const char* getStatus() const;
 

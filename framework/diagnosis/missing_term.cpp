@@ -186,8 +186,8 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
   return test;
 }
 
-/// Of recordings with offsets: beside these, or in their place where noise as it is stated remains with a
-/// term that is another than an offset. without: where they are not integrated out.
+/// Of recordings with offsets: beside these, or in their place. That is where noise as it is stated remains
+/// with a term other than an offset. without: where they are not integrated out.
 ModelTest testWithOffsets(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                           const RecordedFeatures& without, const KnownFit& known) {
   ModelTest test = testExplained(experiment, recordings, known);

@@ -25,8 +25,8 @@ std::optional<RecordedFeatures> testModel(const MeasurementReader& reader, const
                                           std::optional<double> start, const Eigen::VectorXd& known,
                                           InferredMeasurement& inferred);
 
-/// The same of recordings together, of an experiment or of the trials that it combines: each with the size of
-/// noise and the offsets that it was found to have, without those whose clock has a fault.
+/// The same of recordings together, of an experiment or of the trials that it combines. Each has the size of
+/// noise and the offsets that were found of it; those whose clock has a fault are left out.
 void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                JointInference& inferred);
 /// The same, which are read anew. Throws as JointInferrer does.

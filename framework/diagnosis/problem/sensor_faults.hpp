@@ -10,9 +10,9 @@ struct TakenFaults {
   bool unstated_sizes = true;  ///< else those that the experiment does not state are not taken
 };
 
-/// Takes a recording as inference explains it alone: samples that are no noise are left out; sizes of noise
-/// that were found stand for those stated, offsets are integrated out, colours are kept for a problem that
-/// counts them.
+/// Takes a recording as inference explains it alone. Samples that are no noise are left out, and sizes of
+/// noise that were found stand for those stated. Offsets are integrated out; colours are kept for a problem
+/// that counts them.
 void takeFaults(const SimulatorFit& fit, const TakenFaults& taken, std::size_t recording,
                 RecordedFeatures& recordings);
 

@@ -36,12 +36,14 @@ struct ExplainedRecording {
   MeasuredTrial makeTrial() const;
 };
 
-/// The posterior of a recording by simulation alone, under the stated noise or, where that does not explain
-/// it, without its spikes (findSpikedFeatures: if that explains it or leaves less than half of the misfit),
-/// under other hypotheses of the noise (SimulatorSampler::samplePosterior), without what every other sample
-/// is off by (findAlternation), or by a clock with faults (findClockFaults). Else the simple fault that
-/// explains a gross misfit, and what speaks against the model, are named. What is unknown of the excitation
-/// is supposed (makeOwnSimulator).
+/// The posterior of a recording by simulation alone, under the stated noise. Where that does not explain it,
+/// others are tried one after the other:
+///   without its spikes (findSpikedFeatures), if that explains it or leaves less than half of the misfit
+///   other hypotheses of the noise (SimulatorSampler::samplePosterior)
+///   without what every other sample is off by (findAlternation)
+///   a clock with faults (findClockFaults)
+/// Else the simple fault that explains a gross misfit, and what speaks against the model, are named. What is
+/// unknown of the excitation is supposed (makeOwnSimulator).
 /// Throws MeasurementError where the table cannot be used.
 ExplainedRecording explainRecording(const RecordingSetup& setup, const Table& table,
                                     std::optional<double> start, const Eigen::VectorXd& known,

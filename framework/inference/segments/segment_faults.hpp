@@ -27,9 +27,9 @@ struct SegmentResidual {
 std::optional<SupposedSegments> leaveSpikes(const SupposedSegments& from, const ResponseLayout& layout,
                                             const Eigen::VectorXd& starts);
 
-/// What else than stated the noise may be, the simplest first, as listNoiseHypotheses() has it of other
-/// recordings: of another size; with an offset of each sensor, a nuisance parameter; of the colour that the
-/// residual has (fitAutoregression), where no samples are missing and it is at most as large as stated.
+/// What else than stated the noise may be, the simplest first, as listNoiseHypotheses() has it of others. It
+/// is of another size, or sensors have an offset each, a nuisance parameter. Or it has the colour of the
+/// residual (fitAutoregression): where no samples are missing and it is at most as large as stated.
 std::vector<SupposedSegments> supposeNoise(const SupposedSegments& from, const SegmentResidual& fitted);
 
 /// The reports of offsets that were supposed, from the draws: they are taken off the nuisance parameters.

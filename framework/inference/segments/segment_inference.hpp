@@ -31,7 +31,7 @@ class SegmentInference {
 
   /// From `start` (default: that of the experiment's measurement) to the recording's end. The posterior is
   /// sampled as that of any measurement (samplePosterior), each segment's initial state eliminated
-  /// (SegmentedMisfit); where the stated noise does not explain it, without spikes or under other noise
+  /// (SegmentedMisfit). Where the stated noise does not explain it, spikes and other noise are supposed
   /// (supposeNoise). Throws ExperimentError (makeSegmentGrid) and MeasurementError. Cost: some 1000
   /// simulations of the recording with derivatives, however many segments it has.
   InferredMeasurement infer(const Table& table, std::optional<double> start) const;

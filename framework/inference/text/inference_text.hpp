@@ -35,8 +35,8 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
 
 using LabelledMeasurements = std::vector<std::pair<std::string, const InferredMeasurement*>>;
 
-/// What a status of a recording's sensors or clock (listRecordingFaults) says of each recording that has it,
-/// of many of the first four; then what to do.
+/// What a status of sensors or clocks (listRecordingFaults) says of each recording that has it, of the first
+/// four of many. Then what to do.
 std::string explainFaults(const std::string& status, const LabelledMeasurements& recordings);
 
 /// The lines below it. own: of statuses that have another text than that of one recording.
