@@ -46,14 +46,16 @@ Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictio
   return z.unaryExpr(&calcNormalProbability);
 }
 
-std::vector<int> countPit(const Eigen::ArrayXd& pit) {
-  std::vector<int> counts(kPitBins, 0);
-  for (const double value : pit) {
-    if (std::isfinite(value)) {
-      ++counts[std::min(static_cast<int>(value * kPitBins), kPitBins - 1)];
+std::vector<int> countPit(const Eigen::ArrayXd& pit, const Eigen::VectorXd& weights) {
+  Eigen::ArrayXd counts = Eigen::ArrayXd::Zero(kPitBins);
+  for (Eigen::Index i = 0; i < pit.size(); ++i) {
+    if (std::isfinite(pit[i])) {
+      counts[std::min(static_cast<int>(pit[i] * kPitBins), kPitBins - 1)] +=
+          weights.size() > 0 ? weights[i] : 1.0;
     }
   }
-  return counts;
+  counts = counts.round();
+  return {counts.begin(), counts.end()};
 }
 
 }  // namespace twinmap

@@ -26,7 +26,8 @@ Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictio
 constexpr int kPitBins = 10;
 
 /// Counts of `pit` in kPitBins equal bins of [0, 1]. Flat: calibrated; a hump: stddev too large; a U: too
-/// small; a slope: bias. Values that are not numbers are not counted.
-std::vector<int> countPit(const Eigen::ArrayXd& pit);
+/// small; a slope: bias. Values that are not numbers are not counted. weights: of how many samples each
+/// stands for (Estimates::weights), or empty; the counts are rounded.
+std::vector<int> countPit(const Eigen::ArrayXd& pit, const Eigen::VectorXd& weights = {});
 
 }  // namespace twinmap

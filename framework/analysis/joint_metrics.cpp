@@ -87,7 +87,8 @@ Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Estimates& predict
 
 JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Estimates& estimates) {
   const JackknifeFigures figures = calcWithJackknife(
-      calcTerms(truth, estimates), [](const Eigen::VectorXd& mean, double) { return mean; });
+      calcTerms(truth, estimates), [](const Eigen::VectorXd& mean, double) { return mean; }, 1,
+      estimates.weights);
   JointMetrics metrics;
   for (std::size_t i = 0; i < kJointColumns.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);

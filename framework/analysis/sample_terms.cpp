@@ -125,7 +125,8 @@ ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Estimates& pr
           limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
           takeMarginals(predictions.mixtures, row),
           {},
-          takeFactors(predictions.interval_factors, row)};
+          takeFactors(predictions.interval_factors, row),
+          predictions.weights};
 }
 
 SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples) {

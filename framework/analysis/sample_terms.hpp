@@ -15,6 +15,7 @@ struct ParameterSamples {
   std::vector<MarginalMixture> mixtures{};  ///< where the distributions are no normal ones; else empty
   Eigen::ArrayXd z{};  ///< the truths as normal quantiles, where known otherwise; else empty
   std::vector<IntervalFactor> factors{};  ///< where intervals are not those of the distributions; else empty
+  Eigen::VectorXd weights{};              ///< Estimates::weights
 };
 
 /// Those of one row of p x n each; limit_stddev may be empty.

@@ -83,8 +83,11 @@ struct Estimates {
   /// Of each measurement, where the estimator gives mixtures; else empty.
   std::vector<Mixture> mixtures{};
   IntervalFactors interval_factors{};
-  std::vector<Mixture> ridges{};   ///< Estimate::ridge of each, where any has one; else empty
-  Eigen::MatrixXd limit_stddev{};  ///< what the measurements allow, as the estimator predicts it; or empty
+  std::vector<Mixture> ridges{};      ///< Estimate::ridge of each, where any has one; else empty
+  Eigen::MatrixXd limit_stddev{};     ///< what the measurements allow, as the estimator predicts it; or empty
+  std::vector<BoundedDraws> draws{};  ///< Estimate::draws of each, where any has some; else empty
+  /// n, of how many test samples each stands for in figures of them all; empty: of one.
+  Eigen::VectorXd weights{};
 };
 
 /// In other units, as convert() of a mixture; the mean and standard deviation of a mixture follow from it.

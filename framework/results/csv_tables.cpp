@@ -82,6 +82,9 @@ std::string makeMetricsCsv(const RunSummary& run) {
   for (const MetricsColumn& column : columns) {
     header.push_back(column.name + "_se");
   }
+  if (run.evaluation.answers) {
+    header.emplace_back("not_ok");
+  }
   std::vector<Row> rows{header};
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
     rows.push_back(makeMetricsRow(run, columns, p));
@@ -90,6 +93,9 @@ std::string makeMetricsCsv(const RunSummary& run) {
     for (std::size_t k = 0; k < run.evaluation.derived->quantities.size(); ++k) {
       rows.push_back(makeDerivedRow(*run.evaluation.derived, columns, k));
     }
+  }
+  for (std::size_t i = 1; i < rows.size() && run.evaluation.answers; ++i) {
+    rows[i].push_back(toText(run.evaluation.answers->calcNotOk()));
   }
   return makeCsv(rows);
 }
@@ -124,6 +130,10 @@ std::string makePredictionsCsv(const RunSummary& run) {
   if (factors.isGiven()) {
     rows[0].insert(rows[0].end(), {"interval_factor50", "interval_factor95"});
   }
+  const Eigen::VectorXd& weights = run.evaluation.predictions.weights;
+  if (weights.size() > 0) {
+    rows[0].emplace_back("stands_for");
+  }
   for (std::size_t i = 0; i < run.test_indices.size(); ++i) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
       const auto row = static_cast<Eigen::Index>(p);
@@ -138,6 +148,9 @@ std::string makePredictionsCsv(const RunSummary& run) {
       if (factors.isGiven()) {
         rows.back().insert(rows.back().end(),
                            {toText(factors.of50(row, column)), toText(factors.of95(row, column))});
+      }
+      if (weights.size() > 0) {
+        rows.back().push_back(toText(weights[column]));
       }
     }
   }

@@ -55,10 +55,16 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
   if (table.hasColumn("interval_factor95")) {
     stored.predictions.interval_factors = {stored.truth, stored.truth};
   }
+  if (table.hasColumn("stands_for")) {
+    stored.predictions.weights.resize(samples);
+  }
   stored.limit_stddev.resize(table.hasColumn("limit_stddev") ? count : 0, samples);
   for (Eigen::Index i = 0; i < samples; ++i) {
     const auto first = static_cast<std::size_t>(i * count);
     stored.samples.push_back(static_cast<int>(rows.getNumber(first, "sample")));
+    if (stored.predictions.weights.size() > 0) {
+      stored.predictions.weights[i] = rows.getNumber(first, "stands_for");
+    }
     for (Eigen::Index p = 0; p < count; ++p) {
       const std::size_t row = first + static_cast<std::size_t>(p);
       rows.requireText(row, "sample", std::to_string(stored.samples.back()));

@@ -27,10 +27,10 @@ bool isOfStatedNoise(const InferredMeasurement& inferred, const std::vector<Feat
 
 }  // namespace
 
-bool needsPosterior(const Inferrer& inferrer, const InferredMeasurement& inferred) {
+bool needsPosterior(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
+                    const std::vector<FeatureInfo>& infos) {
   return !inferred.refined->isAccepted() || inferred.basins.cols() > 1 || inferred.coverage_is_short ||
-         crossesBounds(selectEstimate(inferred), inferrer.getExperiment().model.parameters) ||
-         !isOfStatedNoise(inferred, inferrer.getExtractor().getInfos());
+         crossesBounds(selectEstimate(inferred), parameters) || !isOfStatedNoise(inferred, infos);
 }
 
 }  // namespace twinmap

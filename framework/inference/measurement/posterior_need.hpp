@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "framework/inference/inferrer.hpp"
 
 namespace twinmap {
@@ -7,7 +9,8 @@ namespace twinmap {
 /// Whether a refined estimate may mislead, so that the posterior on the simulator should take its place: the
 /// refinement was not accepted, the estimator knows of other basins, an interval crosses a bound, the refined
 /// test samples of the run had intervals that held less than they say, or the residual is not of the noise
-/// that is stated. inferred: refined by the inferrer's simulator.
-bool needsPosterior(const Inferrer& inferrer, const InferredMeasurement& inferred);
+/// that is stated. inferred: refined; infos: of its features.
+bool needsPosterior(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
+                    const std::vector<FeatureInfo>& infos);
 
 }  // namespace twinmap
