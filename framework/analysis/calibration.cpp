@@ -36,7 +36,8 @@ Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev) {
   return stddev * z.unaryExpr(&calcStandardCrps);
 }
 
-Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictions) {
+Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truths, const Estimates& predictions) {
+  const Eigen::MatrixXd truth = predictions.repeat(truths);
   if (!predictions.mixtures.empty()) {
     return Eigen::MatrixXd::NullaryExpr(truth.rows(), truth.cols(), [&](Eigen::Index p, Eigen::Index i) {
       return takeMarginal(predictions.mixtures[static_cast<std::size_t>(i)], p).calcProbability(truth(p, i));
@@ -54,7 +55,7 @@ std::vector<int> countPit(const Eigen::ArrayXd& pit, const Eigen::VectorXd& weig
           weights.size() > 0 ? weights[i] : 1.0;
     }
   }
-  counts = counts.round();
+  counts = counts.round().max(0.0);
   return {counts.begin(), counts.end()};
 }
 

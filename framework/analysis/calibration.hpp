@@ -20,7 +20,8 @@ double calcTwoSidedQuantile(double probability);
 Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev);
 
 /// Probability integral transform Phi((true - mean) / stddev), or that of the mixture, of each parameter and
-/// sample (p x n): uniform on [0, 1] where the predictive distributions are calibrated.
+/// sample (p x n; of Estimates::repeated columns too): uniform on [0, 1] where the predictive distributions
+/// are calibrated.
 Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictions);
 
 constexpr int kPitBins = 10;

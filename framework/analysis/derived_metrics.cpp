@@ -57,8 +57,9 @@ ParameterSamples takeQuantity(const DerivedEvaluation& evaluation, Index k) {
 
 }  // namespace
 
-DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const MatrixXd& truth,
-                                  const Estimates& estimates, const MatrixXd& limit_stddev) {
+DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const MatrixXd& truths,
+                                  const Estimates& estimates, const MatrixXd& limits) {
+  const MatrixXd truth = estimates.repeat(truths), limit_stddev = estimates.repeat(limits);
   const Index q = quantities.count(), n = truth.cols();
   DerivedEvaluation result{quantities.getSpecs(), quantities.calcAll(truth),
                            MatrixXd(q, n),        MatrixXd(q, n),
@@ -85,8 +86,13 @@ DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const Mat
     samples.z = z.row(k).transpose().array();
     samples.factors = factors;
     samples.weights = estimates.weights;
+    samples.repeated = estimates.repeated;
     result.metrics.push_back(calcMetrics(result.quantities[static_cast<std::size_t>(k)], samples));
   }
+  for (MatrixXd* values : {&result.truth, &result.mean, &result.stddev, &result.lower95, &result.upper95}) {
+    values->conservativeResize(Eigen::NoChange, truths.cols());
+  }
+  result.limit_stddev = limits;
   return result;
 }
 

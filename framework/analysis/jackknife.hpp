@@ -21,9 +21,8 @@ struct JackknifeFigures {
 /// O(k n). NaN where a figure without one sample is, as that of a standard deviation of two samples.
 ///
 /// Several draws of one sample (column j + i n / draws of sample j) are left out together, since they are not
-/// independent. weights: of the samples, or empty: equal ones; means are weighted, and samples of weight 0
-/// count for nothing. Of a mean f_i is then (W f - w_i t_i) / (W - w_i), W the sum of the weights.
-JackknifeFigures calcWithJackknife(const Eigen::MatrixXd& terms, const FigureFunction& figures, int draws = 1,
-                                   const Eigen::VectorXd& weights = {});
+/// independent.
+JackknifeFigures calcWithJackknife(const Eigen::MatrixXd& terms, const FigureFunction& figures,
+                                   int draws = 1);
 
 }  // namespace twinmap

@@ -21,12 +21,13 @@ ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamp
   const SampleTerms terms = calcSampleTerms(parameter, samples);
   const JackknifeFigures estimates = calcWithJackknife(
       terms.terms, [&](const VectorXd& mean, double count) { return calcFigureValues(terms, mean, count); },
-      draws, samples.weights);
+      draws);
   ParameterMetrics metrics;
   setFigures(estimates.value, metrics);
   setFigures(estimates.standard_error, metrics.se);
-  metrics.samples = static_cast<int>(samples.weights.size() > 0 ? (samples.weights.array() > 0.0).count()
-                                                                : samples.truth.size());
+  metrics.samples = static_cast<int>(samples.weights.size() > 0
+                                         ? (samples.weights.head(samples.count()).array() > 0.0).count()
+                                         : samples.count());
   return metrics;
 }
 

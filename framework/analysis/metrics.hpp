@@ -17,7 +17,7 @@ struct ParameterMetrics : ParameterFigures {
 /// Metrics of each parameter, in order. `truth` is p x n, n >= 2 (3 for standard errors). `limit_stddev` is
 /// p x n, in the parameters' units, or empty where the limit is switched off; a NaN in a row makes the
 /// parameter's limit NaN. `draws`: columns j + i n / draws are draws of one sample, which standard errors
-/// leave out together. Samples weigh what they stand for (Estimates::weights). O(p n).
+/// leave out together. O(p n).
 std::vector<ParameterMetrics> calcMetrics(const std::vector<ParameterSpec>& parameters,
                                           const Eigen::MatrixXd& truth, const Estimates& predictions,
                                           const Eigen::MatrixXd& limit_stddev = {}, int draws = 1);

@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 constexpr int kBlock = 64;  // resamples whose means are one matrix product
 
 VectorXd calcAtMeans(const TermSet& set) {
-  return set.figures(set.calcMeans(), static_cast<double>(set.terms.cols()));
+  return set.figures(set.terms.rowwise().mean(), static_cast<double>(set.terms.cols()));
 }
 
 /// Column r: how often resample first + r of stream `stream` draws each of n samples, over n.
@@ -35,11 +35,7 @@ MatrixXd drawWeights(const RandomStream& random, Index n, int first, int count, 
 
 /// Figures of each resample, one column each.
 MatrixXd calcResampled(const TermSet& set, const MatrixXd& weights) {
-  MatrixXd means = set.terms * weights;
-  if (set.weights.size() > 0) {
-    const MatrixXd weighted = set.weights.asDiagonal() * weights;
-    means = set.terms * weighted * weighted.colwise().sum().cwiseInverse().asDiagonal();
-  }
+  const MatrixXd means = set.terms * weights;
   MatrixXd figures(calcAtMeans(set).size(), means.cols());
   for (Index r = 0; r < means.cols(); ++r) {
     figures.col(r) = set.figures(means.col(r), static_cast<double>(set.terms.cols()));
@@ -66,12 +62,10 @@ MatrixXd calcResampledDifferences(const TermSet& a, const TermSet& b, const Boot
 /// figures without sample i; one column a sample.
 MatrixXd calcInfluences(const TermSet& set) {
   const auto n = static_cast<double>(set.terms.cols());
-  const VectorXd mean = set.calcMeans();
-  const VectorXd weights = set.weights.size() > 0 ? set.weights : VectorXd::Ones(set.terms.cols());
+  const VectorXd mean = set.terms.rowwise().mean();
   MatrixXd without(calcAtMeans(set).size(), set.terms.cols());
   for (Index i = 0; i < set.terms.cols(); ++i) {
-    without.col(i) =
-        set.figures(mean + weights[i] * (mean - set.terms.col(i)) / (weights.sum() - weights[i]), n - 1.0);
+    without.col(i) = set.figures(mean + (mean - set.terms.col(i)) / (n - 1.0), n - 1.0);
   }
   const VectorXd center = without.rowwise().mean();
   return (n - 1.0) / n * ((-without).colwise() + center);
@@ -137,10 +131,6 @@ DifferenceIntervals makeIntervals(const TermSet& a, const TermSet& b, const Matr
 }
 
 }  // namespace
-
-VectorXd TermSet::calcMeans() const {
-  return weights.size() > 0 ? VectorXd(terms * weights / weights.sum()) : VectorXd(terms.rowwise().mean());
-}
 
 DifferenceIntervals calcPairedIntervals(const TermSet& a, const TermSet& b, const BootstrapOptions& options) {
   assert(a.terms.cols() == b.terms.cols());

@@ -11,9 +11,6 @@ namespace twinmap {
 struct TermSet {
   Eigen::MatrixXd terms;  ///< k x n, n >= 2
   FigureFunction figures;
-  Eigen::VectorXd weights{};  ///< n, of the samples in the means; empty: equal ones
-
-  Eigen::VectorXd calcMeans() const;  ///< k
 };
 
 struct BootstrapOptions {

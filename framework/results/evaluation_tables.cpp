@@ -50,7 +50,7 @@ CsvRow addFigures(CsvRow row, const ParameterFigures& figures, bool with_limit =
 
 /// The method of a test sample's answer and its statuses; empty of one that was not sampled but would be.
 void addAnswer(const std::optional<AnswerSummary>& answers, std::size_t sample, CsvRow& row) {
-  const bool is_known = answers && answers->getWeight(sample) > 0.0;
+  const bool is_known = answers && answers->weights[static_cast<Index>(sample)] > 0.0;
   std::string statuses;
   for (const std::string& status :
        is_known ? answers->answers[sample].statuses : std::vector<std::string>()) {

@@ -143,19 +143,17 @@ struct TestAnswer {
 
 /// The answers of `twinmap infer` that tables judge, where those are refined.
 struct AnswerSummary {
-  std::vector<TestAnswer> answers;       ///< n
-  Eigen::VectorXd weights;               ///< Estimates::weights
+  std::vector<TestAnswer> answers;  ///< n
+  /// n, how many samples each stands for: 0 of those that need a posterior and were not sampled.
+  Eigen::VectorXd weights;
   std::size_t needing = 0, sampled = 0;  ///< of the posterior on the simulator
 
-  double getWeight(std::size_t sample) const {
-    return weights.size() > 0 ? weights[static_cast<Eigen::Index>(sample)] : 1.0;
-  }
   /// The share of the test samples whose answer fulfils a condition.
   template <class Condition>
   double calcShare(const Condition& condition) const {
     double share = 0.0;
     for (std::size_t i = 0; i < answers.size(); ++i) {
-      share += condition(answers[i]) ? getWeight(i) : 0.0;
+      share += condition(answers[i]) ? weights[static_cast<Eigen::Index>(i)] : 0.0;
     }
     return share / static_cast<double>(answers.size());
   }

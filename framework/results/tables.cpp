@@ -105,18 +105,19 @@ std::string makeAnswerLegend(const RunSummary& run) {
       fmt::format("Refined on the simulator: {} of {} estimates; methods.csv has the quick ones too.\n",
                   accepted, refined.size());
   if (answers.needing > 0) {
-    text += fmt::format("Replaced by the posterior on the simulator, as infer does: {}{}.\n", answers.needing,
+    text += fmt::format("Replaced by the posterior on the simulator, as by infer: {} estimates{}.\n",
+                        answers.needing,
                         answers.sampled < answers.needing
-                            ? fmt::format(" of them, for which {} stand that were sampled", answers.sampled)
+                            ? fmt::format("; {} of these were sampled and stand for all", answers.sampled)
                             : "");
   }
   if (const double share = answers.calcNotOk(); share > 0.0) {
-    text += fmt::format("Of {:.3g} % infer says that they are not ok: {}.\n", kPercent * share,
+    text += fmt::format("Not ok by infer: {:.3g} % of the test samples ({}).\n", kPercent * share,
                         listStatuses(answers));
   }
   if (answers.calcShare([](const TestAnswer& answer) { return answer.has("multimodal"); }) > 0.0) {
     text +=
-        "Where several values fit (multimodal), errors are those of the nearest, intervals those of all.\n";
+        "Of several values that fit (multimodal), errors are to the nearest; intervals hold all of them.\n";
   }
   return text;
 }

@@ -98,25 +98,26 @@ std::string findDifferenceOfSets(const ComparedRun& a, const ComparedRun& b,
   return "";
 }
 
-TermSet calcTerms(const ComparedRun& run, Index p) {
-  const SampleTerms of =
-      calcSampleTerms(run.parameters[static_cast<std::size_t>(p)],
-                      takeParameter(run.test.truth, run.test.predictions, run.test.limit_stddev, p));
-  return {of.terms,
-          [of](const VectorXd& mean, double samples) { return calcFigureValues(of, mean, samples); },
-          run.test.predictions.weights};
+SampleTerms calcTerms(const ComparedRun& run, Index p) {
+  return calcSampleTerms(run.parameters[static_cast<std::size_t>(p)],
+                         takeParameter(run.test.truth, run.test.predictions, run.test.limit_stddev, p));
 }
 
-VectorXd calcFigures(const TermSet& set) {
-  return set.figures(set.calcMeans(), static_cast<double>(set.terms.cols()));
+VectorXd calcFigures(const SampleTerms& of) {
+  return calcFigureValues(of, of.terms.rowwise().mean(), static_cast<double>(of.terms.cols()));
+}
+
+TermSet makeTermSet(const SampleTerms& of) {
+  return {of.terms,
+          [&of](const VectorXd& mean, double samples) { return calcFigureValues(of, mean, samples); }};
 }
 
 ComparedParameter compareParameter(const ComparedRun& a, const ComparedRun& b, const Match& match,
                                    bool paired) {
-  const TermSet of_a = calcTerms(a, match.a), of_b = calcTerms(b, match.b);
+  const SampleTerms of_a = calcTerms(a, match.a), of_b = calcTerms(b, match.b);
   const VectorXd figures_a = calcFigures(of_a), figures_b = calcFigures(of_b);
-  const DifferenceIntervals intervals =
-      paired ? calcPairedIntervals(of_a, of_b) : calcUnpairedIntervals(of_a, of_b);
+  const DifferenceIntervals intervals = paired ? calcPairedIntervals(makeTermSet(of_a), makeTermSet(of_b))
+                                               : calcUnpairedIntervals(makeTermSet(of_a), makeTermSet(of_b));
   const ParameterSpec& parameter = a.parameters[static_cast<std::size_t>(match.a)];
   ComparedParameter compared{parameter.name.text, parameter.unit, {}};
   const double unknown = std::nan("");

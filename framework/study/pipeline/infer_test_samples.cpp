@@ -83,14 +83,14 @@ std::vector<Refined> refineAll(const Study& study, const LabelledFeatures& test,
   return refined;
 }
 
-std::vector<std::size_t> listNeeding(const Study& study, const std::vector<InferredMeasurement>& inferred) {
-  std::vector<std::size_t> needing;
-  for (std::size_t i = 0; i < inferred.size(); ++i) {
-    if (needsPosterior(inferred[i], study.experiment.model.parameters, study.extractor.getInfos())) {
-      needing.push_back(i);
+void findNeeding(const Study& study, InferredTests& tests) {
+  const std::vector<FeatureInfo>& infos = study.extractor.getInfos();
+  for (std::size_t i = 0; i < tests.inferred.size(); ++i) {
+    if (needsPosterior(tests.inferred[i], study.experiment.model.parameters, infos)) {
+      tests.needing.push_back(i);
+      tests.near.push_back(!mayBeWrong(tests.inferred[i], infos));
     }
   }
-  return needing;
 }
 
 std::vector<std::size_t> chooseEvenly(const std::vector<std::size_t>& from, std::size_t count) {
@@ -122,7 +122,7 @@ void sampleNeeding(const Study& study, const LabelledFeatures& test, const Trust
   if (!shouldRefine(RefineMode::kAutomatic, study.simulator, study.noise)) {
     return;  // as MeasurementSession
   }
-  tests.needing = listNeeding(study, tests.inferred);
+  findNeeding(study, tests);
   const std::size_t count = countSampled(tests.needing.size(), tests.inferred.size());
   if (count == 0) {
     return;
@@ -169,21 +169,6 @@ void refineTests(const Study& study, const LabelledFeatures& test, const TrustMo
 }
 
 }  // namespace
-
-Eigen::VectorXd InferredTests::calcWeights() const {
-  if (sampled.size() == needing.size()) {
-    return {};
-  }
-  VectorXd weights = VectorXd::Ones(static_cast<Index>(inferred.size()));
-  for (const std::size_t i : needing) {
-    weights[static_cast<Index>(i)] = 0.0;
-  }
-  for (const std::size_t i : sampled) {
-    weights[static_cast<Index>(i)] =
-        static_cast<double>(needing.size()) / static_cast<double>(sampled.size());
-  }
-  return weights;
-}
 
 std::size_t countSampled(std::size_t needing, std::size_t all) {
   constexpr double kAsSureAs = 119.0;  // .95 * .05 / .02^2

@@ -16,11 +16,14 @@ struct InferredTests {
   std::vector<InferredMeasurement> inferred;  ///< likewise
   /// Those for which it samples the posterior on the simulator, and those of them for which the run did.
   std::vector<std::size_t> needing, sampled;
+  std::vector<bool> near;  ///< of `needing`: whether only a bound makes it another than the refined estimate
   StageNotes notes;
 
-  /// How many test samples each stands for: one that was sampled for others that need it; empty where all of
-  /// these were.
-  Eigen::VectorXd calcWeights() const;
+  bool areAllSampled() const { return sampled.size() == needing.size(); }
+  /// How many of those that need it each that was sampled stands for.
+  double calcWeight() const {
+    return static_cast<double>(needing.size()) / static_cast<double>(sampled.size());
+  }
 };
 
 /// How many of the test samples that need a posterior are sampled: so many that figures of all, in which they

@@ -13,14 +13,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+Mixture makeNormal(const VectorXd& mean, const VectorXd& stddev, const MatrixXd& correlation) {
+  return {VectorXd::Ones(1), mean, stddev, {correlation}};
+}
+
 /// Of each a mixture, where any is to be one.
 void requireMixtures(Estimates& estimates) {
-  for (Index i = 0; i < estimates.mean.cols() && estimates.mixtures.size() < estimates.correlations.size();
-       ++i) {
-    estimates.mixtures.push_back({VectorXd::Ones(1),
-                                  estimates.mean.col(i),
-                                  estimates.stddev.col(i),
-                                  {estimates.correlations[static_cast<std::size_t>(i)]}});
+  for (std::size_t i = estimates.mixtures.size(); i < estimates.correlations.size(); ++i) {
+    const auto column = static_cast<Index>(i);
+    estimates.mixtures.push_back(
+        makeNormal(estimates.mean.col(column), estimates.stddev.col(column), estimates.correlations[i]));
   }
 }
 
@@ -48,9 +50,8 @@ void setPosterior(const Estimate& one, std::size_t sample, Estimates& estimates)
     requireMixtures(estimates);
   }
   if (!estimates.mixtures.empty()) {
-    estimates.mixtures[sample] = one.isMultimodal()
-                                     ? one.mixture
-                                     : Mixture{VectorXd::Ones(1), one.mean, one.stddev, {one.correlation}};
+    estimates.mixtures[sample] =
+        one.isMultimodal() ? one.mixture : makeNormal(one.mean, one.stddev, one.correlation);
   }
   if (one.isMultimodal()) {
     estimates.interval_factors.setNormal(i);
@@ -71,11 +72,68 @@ void takeNearest(const VectorXd& truth, const Mixture& mixture, Index sample, Es
   estimates.stddev.col(sample) = mixture.stddevs.col(nearest);
 }
 
+/// The columns of others that are repeated, behind those of all.
+void append(const Estimates& others, Estimates& estimates) {
+  const auto more = static_cast<Index>(estimates.repeated.size());
+  const Index n = estimates.mean.cols();
+  estimates.mean.conservativeResize(Eigen::NoChange, n + more);
+  estimates.stddev.conservativeResize(Eigen::NoChange, n + more);
+  IntervalFactors& factors = estimates.interval_factors;
+  for (MatrixXd* values : {&factors.of50, &factors.of95}) {
+    values->conservativeResize(Eigen::NoChange, values->cols() > 0 ? n + more : 0);
+  }
+  for (Index k = 0; k < more; ++k) {
+    const Index i = estimates.repeated[static_cast<std::size_t>(k)];
+    const auto sample = static_cast<std::size_t>(i);
+    estimates.mean.col(n + k) = others.mean.col(i);
+    estimates.stddev.col(n + k) = others.stddev.col(i);
+    estimates.correlations.push_back(others.correlations[sample]);
+    for (Index p = 0; p < estimates.mean.rows() && factors.isGiven(); ++p) {
+      factors.set(p, n + k, others.interval_factors.get(p, i));
+    }
+    if (!estimates.mixtures.empty()) {
+      estimates.mixtures.push_back(
+          others.mixtures.empty()
+              ? makeNormal(others.mean.col(i), others.stddev.col(i), others.correlations[sample])
+              : others.mixtures[sample]);
+    }
+    if (!estimates.ridges.empty()) {
+      estimates.ridges.push_back(others.ridges[sample]);
+    }
+    if (!estimates.draws.empty()) {
+      estimates.draws.emplace_back();
+    }
+  }
+}
+
+/// What the others of an estimate's answers are to figures: those that need a posterior and were not sampled
+/// are left out, but for the refined ones that only a bound makes another. These stand for themselves, and
+/// those that were sampled tell by how much figures of the one kind and of the other differ.
+void setWeights(const InferredTests& tests, const Estimates& refined, Estimates& estimates) {
+  const auto n = static_cast<Index>(tests.inferred.size());
+  estimates.weights = VectorXd::Ones(n);
+  for (std::size_t k = 0; k < tests.needing.size(); ++k) {
+    estimates.weights[static_cast<Index>(tests.needing[k])] = tests.near[k] ? 1.0 : 0.0;
+  }
+  const double weight = tests.calcWeight();
+  for (const std::size_t i : tests.sampled) {
+    if (estimates.weights[static_cast<Index>(i)] > 0.0) {
+      estimates.repeated.push_back(static_cast<Index>(i));
+    }
+    estimates.weights[static_cast<Index>(i)] = weight;
+  }
+  const auto more = static_cast<Index>(estimates.repeated.size());
+  estimates.weights.conservativeResize(n + more);
+  estimates.weights.tail(more).setConstant(1.0 - weight);
+  append(refined, estimates);
+}
+
 }  // namespace
 
 Estimates selectAnswers(const InferredTests& tests, const MatrixXd& residual_correlation,
                         const MatrixXd& truth) {
-  Estimates estimates = selectEstimates(tests.by_estimator, residual_correlation, tests.refined);
+  const Estimates refined = selectEstimates(tests.by_estimator, residual_correlation, tests.refined);
+  Estimates estimates = refined;
   for (const std::size_t i : tests.sampled) {
     const PosteriorEstimate& posterior = *tests.inferred[i].posterior;
     if (posterior.isReliable()) {
@@ -87,7 +145,9 @@ Estimates selectAnswers(const InferredTests& tests, const MatrixXd& residual_cor
       takeNearest(truth.col(static_cast<Index>(i)), estimates.mixtures[i], static_cast<Index>(i), estimates);
     }
   }
-  estimates.weights = tests.calcWeights();
+  if (!tests.areAllSampled()) {
+    setWeights(tests, refined, estimates);
+  }
   return estimates;
 }
 
@@ -95,7 +155,16 @@ std::optional<AnswerSummary> summarizeAnswers(const InferredTests& tests) {
   if (tests.inferred.empty()) {
     return std::nullopt;
   }
-  AnswerSummary summary{{}, tests.calcWeights(), tests.needing.size(), tests.sampled.size()};
+  AnswerSummary summary{{},
+                        VectorXd::Ones(static_cast<Index>(tests.inferred.size())),
+                        tests.needing.size(),
+                        tests.sampled.size()};
+  for (const std::size_t i : tests.needing) {
+    summary.weights[static_cast<Index>(i)] = 0.0;
+  }
+  for (const std::size_t i : tests.sampled) {
+    summary.weights[static_cast<Index>(i)] = tests.calcWeight();
+  }
   for (const InferredMeasurement& inferred : tests.inferred) {
     const Estimate answer = selectEstimate(inferred);
     summary.answers.push_back({answer.getMethod(), answer.statuses});
@@ -110,7 +179,7 @@ MethodSummary summarizeSampled(const std::vector<ParameterSpec>& parameters, con
   MethodSummary summary{"sampled", static_cast<Index>(tests.sampled.size()), 0, 0, {}};
   summary.metrics.assign(parameters.size(), {});
   Estimates sampled = answers;
-  sampled.weights.setZero(truth.cols());
+  sampled.weights.setZero(answers.mean.cols());
   std::vector<int> simulations;
   for (const std::size_t i : tests.sampled) {
     const PosteriorEstimate& posterior = *tests.inferred[i].posterior;
