@@ -29,6 +29,13 @@ class Rows {
     return value;
   }
 
+  const std::string& getText(std::size_t row, const std::string& column) const {
+    return table_.getText(row, column);
+  }
+  double getNumberOrNan(std::size_t row, const std::string& column) const {
+    return table_.getNumber(row, column);
+  }
+
   void requireText(std::size_t row, const std::string& column, const std::string& expected) const {
     if (table_.getText(row, column) != expected) {
       fail(row, column + " '" + table_.getText(row, column) + "' must be '" + expected + "'");
@@ -47,6 +54,30 @@ Eigen::Index countSamples(const CsvTable& table, std::size_t parameters) {
     samples.insert(table.getText(row, "sample"));
   }
   return static_cast<Eigen::Index>(samples.size());
+}
+
+/// The numbers of a column of the predictions, and of its sample where it is the first of that.
+void readColumn(const Rows& rows, const std::vector<std::string>& parameters, Eigen::Index column,
+                StoredPredictions& stored) {
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  const std::string& sample = rows.getText(static_cast<std::size_t>(column * count), "sample");
+  for (Eigen::Index p = 0; p < count; ++p) {
+    const auto row = static_cast<std::size_t>(column * count + p);
+    rows.requireText(row, "sample", sample);
+    rows.requireText(row, "parameter", parameters[static_cast<std::size_t>(p)]);
+    stored.predictions.mean(p, column) = rows.getNumber(row, "inferred");
+    stored.predictions.stddev(p, column) = rows.getNumber(row, "stddev");
+    if (stored.predictions.interval_factors.isGiven()) {
+      stored.predictions.interval_factors.set(
+          p, column, {rows.getNumber(row, "interval_factor50"), rows.getNumber(row, "interval_factor95")});
+    }
+    if (column < stored.truth.cols()) {
+      stored.truth(p, column) = rows.getNumber(row, "true");
+    }
+    if (column < stored.limit_stddev.cols() && stored.limit_stddev.rows() > 0) {
+      stored.limit_stddev(p, column) = rows.getNumberOrNan(row, "limit_stddev");
+    }
+  }
 }
 
 }  // namespace
@@ -83,23 +114,7 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
     if (stored.predictions.weights.size() > 0) {
       stored.predictions.weights[i] = rows.getNumber(first, "stands_for");
     }
-    for (Eigen::Index p = 0; p < count; ++p) {
-      const std::size_t row = first + static_cast<std::size_t>(p);
-      rows.requireText(row, "sample", std::to_string(sample));
-      rows.requireText(row, "parameter", parameters[static_cast<std::size_t>(p)]);
-      stored.predictions.mean(p, i) = rows.getNumber(row, "inferred");
-      stored.predictions.stddev(p, i) = rows.getNumber(row, "stddev");
-      if (stored.predictions.interval_factors.isGiven()) {
-        stored.predictions.interval_factors.set(
-            p, i, {rows.getNumber(row, "interval_factor50"), rows.getNumber(row, "interval_factor95")});
-      }
-      if (i < samples) {
-        stored.truth(p, i) = rows.getNumber(row, "true");
-      }
-      if (i < samples && stored.limit_stddev.rows() > 0) {
-        stored.limit_stddev(p, i) = table.getNumber(row, "limit_stddev");
-      }
-    }
+    readColumn(rows, parameters, i, stored);
   }
   return stored;
 }
