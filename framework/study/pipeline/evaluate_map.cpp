@@ -232,7 +232,7 @@ MapEvaluation evaluateMap(const Study& study, const PreparedData& data, TrainedM
   if (study.experiment.evaluation.posterior) {
     addPosteriors(study, data, predictions, limit_stddev, result);
   }
-  if (!tests.sampled.empty()) {
+  if (!tests.listSampled().empty()) {
     result.evaluation.methods.push_back(
         summarizeSampled(parameters, test.parameters, tests, answers, limit_stddev));
   }

@@ -87,29 +87,38 @@ void findNeeding(const Study& study, InferredTests& tests) {
   const std::vector<FeatureInfo>& infos = study.extractor.getInfos();
   for (std::size_t i = 0; i < tests.inferred.size(); ++i) {
     if (needsPosterior(tests.inferred[i], study.experiment.model.parameters, infos)) {
-      tests.needing.push_back(i);
-      tests.near.push_back(!mayBeWrong(tests.inferred[i], infos));
+      (mayBeWrong(tests.inferred[i], infos) ? tests.wrong : tests.near).all.push_back(i);
     }
   }
 }
 
-std::vector<std::size_t> chooseEvenly(const std::vector<std::size_t>& from, std::size_t count) {
-  std::vector<std::size_t> chosen;
+void chooseEvenly(std::size_t count, NeedingTests& tests) {
+  count = std::min(count, tests.all.size());
   for (std::size_t k = 0; k < count; ++k) {
-    chosen.push_back(from[(2 * k + 1) * from.size() / (2 * count)]);
+    tests.sampled.push_back(tests.all[(2 * k + 1) * tests.all.size() / (2 * count)]);
   }
-  return chosen;
+}
+
+/// Refined estimates stand for those that a bound alone makes another: what is sampled corrects them only.
+void chooseSampled(InferredTests& tests) {
+  constexpr double kSureOfWrong = 304.0;  // .95 * .05 / .0125^2: coverage to 1.25 %
+  constexpr double kSureOfNear = 119.0;   // to 2 %
+  constexpr std::size_t kMinNear = 3;     // for the standard error of a correction
+  const std::size_t n = tests.inferred.size();
+  chooseEvenly(countSampled(tests.wrong.all.size(), n, kSureOfWrong), tests.wrong);
+  chooseEvenly(std::max(kMinNear, countSampled(tests.near.all.size(), n, kSureOfNear)), tests.near);
 }
 
 void sampleAll(const Study& study, const LabelledFeatures& test, const TrustModel* trust,
                InferredTests& tests) {
   const SimulatorPosteriorOptions options =
       makePosteriorOptions(study.experiment, SimulatorPosteriorOptions{}.draws);
-  runOnTeam(study.simulator, static_cast<int>(tests.sampled.size()), study.control.threads,
+  const std::vector<std::size_t> sampled = tests.listSampled();
+  runOnTeam(study.simulator, static_cast<int>(sampled.size()), study.control.threads,
             [&](Simulator& simulator, int i) {
               throwIfCancelled(study.control, "interrupted while posteriors were sampled");
               const SimulatorRefiner refiner(study.experiment, simulator.getLayout(), simulator.clone());
-              const std::size_t sample = tests.sampled[static_cast<std::size_t>(i)];
+              const std::size_t sample = sampled[static_cast<std::size_t>(i)];
               const auto column = static_cast<Index>(sample);
               refiner.sampleAndJudge(test.features.col(column), getKnown(test, column), trust, options,
                                      tests.inferred[sample]);
@@ -123,12 +132,12 @@ void sampleNeeding(const Study& study, const LabelledFeatures& test, const Trust
     return;  // as MeasurementSession
   }
   findNeeding(study, tests);
-  const std::size_t count = countSampled(tests.needing.size(), tests.inferred.size());
+  chooseSampled(tests);
+  const std::size_t count = tests.listSampled().size();
   if (count == 0) {
     return;
   }
-  tests.sampled = chooseEvenly(tests.needing, count);
-  logInfo(fmt::format("posteriors are needed of {} of {} test samples", tests.needing.size(),
+  logInfo(fmt::format("posteriors are needed of {} of {} test samples", tests.countNeeding(),
                       tests.inferred.size()));
   timeStage(fmt::format("sample {} of them on the simulator", count), tests.notes, [&] {
     sampleAll(study, test, trust, tests);
@@ -170,14 +179,17 @@ void refineTests(const Study& study, const LabelledFeatures& test, const TrustMo
 
 }  // namespace
 
-std::size_t countSampled(std::size_t needing, std::size_t all) {
-  constexpr double kAsSureAs = 119.0;  // .95 * .05 / .02^2
-  constexpr std::size_t kMin = 3;
+std::vector<std::size_t> InferredTests::listSampled() const {
+  std::vector<std::size_t> sampled = wrong.sampled;
+  sampled.insert(sampled.end(), near.sampled.begin(), near.sampled.end());
+  return sampled;
+}
+
+std::size_t countSampled(std::size_t needing, std::size_t all, double as_sure_as) {
   const auto a = static_cast<double>(all), m = static_cast<double>(needing);
-  // with m^2 / count + (a - m) for the sum of the squared weights, whose inverse is to be kAsSureAs / a^2
-  const double room = a * a / kAsSureAs - (a - m);
-  const double count = room > 0.0 ? std::ceil(m * m / room) : m;
-  return std::min(needing, std::max(kMin, static_cast<std::size_t>(count)));
+  // with m^2 / count + (a - m) for the sum of the squared weights, whose inverse is to be as_sure_as / a^2
+  const double room = a * a / as_sure_as - (a - m);
+  return room > 0.0 ? std::min(needing, static_cast<std::size_t>(std::ceil(m * m / room))) : needing;
 }
 
 InferredTests inferTestSamples(const Study& study, const PreparedData& data, TrainedMap& map) {

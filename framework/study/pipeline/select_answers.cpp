@@ -106,25 +106,33 @@ void append(const Estimates& others, Estimates& estimates) {
   }
 }
 
+/// Those that were sampled stand for the others.
+void setStrataWeights(const NeedingTests& tests, VectorXd& weights) {
+  for (const std::size_t i : tests.all) {
+    weights[static_cast<Index>(i)] = 0.0;
+  }
+  for (const std::size_t i : tests.sampled) {
+    weights[static_cast<Index>(i)] = tests.calcWeight();
+  }
+}
+
 /// What the others of an estimate's answers are to figures: those that need a posterior and were not sampled
 /// are left out, but for the refined ones that only a bound makes another. These stand for themselves, and
 /// those that were sampled tell by how much figures of the one kind and of the other differ.
 void setWeights(const InferredTests& tests, const Estimates& refined, Estimates& estimates) {
   const auto n = static_cast<Index>(tests.inferred.size());
   estimates.weights = VectorXd::Ones(n);
-  for (std::size_t k = 0; k < tests.needing.size(); ++k) {
-    estimates.weights[static_cast<Index>(tests.needing[k])] = tests.near[k] ? 1.0 : 0.0;
-  }
-  const double weight = tests.calcWeight();
-  for (const std::size_t i : tests.sampled) {
-    if (estimates.weights[static_cast<Index>(i)] > 0.0) {
+  setStrataWeights(tests.wrong, estimates.weights);
+  if (tests.near.sampled.size() < tests.near.all.size()) {
+    const double weight = tests.near.calcWeight();
+    for (const std::size_t i : tests.near.sampled) {
       estimates.repeated.push_back(static_cast<Index>(i));
+      estimates.weights[static_cast<Index>(i)] = weight;
     }
-    estimates.weights[static_cast<Index>(i)] = weight;
+    const auto more = static_cast<Index>(estimates.repeated.size());
+    estimates.weights.conservativeResize(n + more);
+    estimates.weights.tail(more).setConstant(1.0 - weight);
   }
-  const auto more = static_cast<Index>(estimates.repeated.size());
-  estimates.weights.conservativeResize(n + more);
-  estimates.weights.tail(more).setConstant(1.0 - weight);
   append(refined, estimates);
 }
 
@@ -134,7 +142,8 @@ Estimates selectAnswers(const InferredTests& tests, const MatrixXd& residual_cor
                         const MatrixXd& truth) {
   const Estimates refined = selectEstimates(tests.by_estimator, residual_correlation, tests.refined);
   Estimates estimates = refined;
-  for (const std::size_t i : tests.sampled) {
+  const std::vector<std::size_t> sampled = tests.listSampled();
+  for (const std::size_t i : sampled) {
     const PosteriorEstimate& posterior = *tests.inferred[i].posterior;
     if (posterior.isReliable()) {
       setPosterior(posterior.estimate, i, estimates);
@@ -145,7 +154,7 @@ Estimates selectAnswers(const InferredTests& tests, const MatrixXd& residual_cor
       takeNearest(truth.col(static_cast<Index>(i)), estimates.mixtures[i], static_cast<Index>(i), estimates);
     }
   }
-  if (!tests.areAllSampled()) {
+  if (sampled.size() < tests.countNeeding()) {
     setWeights(tests, refined, estimates);
   }
   return estimates;
@@ -157,14 +166,10 @@ std::optional<AnswerSummary> summarizeAnswers(const InferredTests& tests) {
   }
   AnswerSummary summary{{},
                         VectorXd::Ones(static_cast<Index>(tests.inferred.size())),
-                        tests.needing.size(),
-                        tests.sampled.size()};
-  for (const std::size_t i : tests.needing) {
-    summary.weights[static_cast<Index>(i)] = 0.0;
-  }
-  for (const std::size_t i : tests.sampled) {
-    summary.weights[static_cast<Index>(i)] = tests.calcWeight();
-  }
+                        tests.countNeeding(),
+                        tests.listSampled().size()};
+  setStrataWeights(tests.wrong, summary.weights);
+  setStrataWeights(tests.near, summary.weights);
   for (const InferredMeasurement& inferred : tests.inferred) {
     const Estimate answer = selectEstimate(inferred);
     summary.answers.push_back({answer.getMethod(), answer.statuses});
@@ -176,12 +181,13 @@ MethodSummary summarizeSampled(const std::vector<ParameterSpec>& parameters, con
                                const InferredTests& tests, const Estimates& answers,
                                const MatrixXd& limit_stddev) {
   constexpr std::size_t kMin = 3;  // for a standard error
-  MethodSummary summary{"sampled", static_cast<Index>(tests.sampled.size()), 0, 0, {}};
+  const std::vector<std::size_t> chosen = tests.listSampled();
+  MethodSummary summary{"sampled", static_cast<Index>(chosen.size()), 0, 0, {}};
   summary.metrics.assign(parameters.size(), {});
   Estimates sampled = answers;
   sampled.weights.setZero(answers.mean.cols());
   std::vector<int> simulations;
-  for (const std::size_t i : tests.sampled) {
+  for (const std::size_t i : chosen) {
     const PosteriorEstimate& posterior = *tests.inferred[i].posterior;
     sampled.weights[static_cast<Index>(i)] = posterior.isReliable() ? 1.0 : 0.0;
     simulations.push_back(posterior.fit->simulations);

@@ -12,22 +12,22 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 TEST(CountSampled, AllOfFewSamples) {
-  EXPECT_EQ(countSampled(0, 400), 0u);
-  EXPECT_EQ(countSampled(100, 100), 100u);
-  EXPECT_EQ(countSampled(2, 5000), 2u);
+  EXPECT_EQ(countSampled(0, 400, 100.0), 0u);
+  EXPECT_EQ(countSampled(80, 100, 100.0), 80u);
+  EXPECT_EQ(countSampled(2, 5000, 100.0), 1u);
 }
 
-// As many as make the inverse of the sum of the squared weights 119 samples.
+// As many as make the inverse of the sum of the squared weights so many samples.
 TEST(CountSampled, AsManyAsFiguresNeed) {
-  EXPECT_EQ(countSampled(500, 500), 119u);
-  EXPECT_EQ(countSampled(1500, 1500), 119u);
+  EXPECT_EQ(countSampled(500, 500, 119.0), 119u);
+  EXPECT_EQ(countSampled(1500, 1500, 304.0), 304u);
   for (const std::size_t needing : {60u, 150u, 300u, 399u}) {
-    const auto sampled = static_cast<double>(countSampled(needing, 400));
+    const auto sampled = static_cast<double>(countSampled(needing, 400, 119.0));
     const auto squares = [&](double count) {
       return static_cast<double>(needing * needing) / count + 400.0 - static_cast<double>(needing);
     };
     EXPECT_GE(400.0 * 400.0 / squares(sampled), 119.0);
-    EXPECT_TRUE(sampled == 3.0 || 400.0 * 400.0 / squares(sampled - 1.0) < 119.0) << needing;
+    EXPECT_LT(400.0 * 400.0 / squares(sampled - 1.0), 119.0) << needing;
   }
 }
 
@@ -88,9 +88,8 @@ InferredTests makeTests() {
     inferred.trust->statuses = {TrustStatus::kOk};
     tests.inferred.push_back(std::move(inferred));
   }
-  tests.needing = {1, 2, 3, 4};
-  tests.near = {true, true, false, false};
-  tests.sampled = {2, 4};
+  tests.near = {{1, 2}, {2}};
+  tests.wrong = {{3, 4}, {4}};
   tests.inferred[2].posterior = makePosterior(1.9, 2.1, false);
   tests.inferred[4].posterior = makePosterior(3.8, 4.2, true);
   return tests;
@@ -123,8 +122,8 @@ TEST(SelectAnswers, StandForThoseThatWereNotSampled) {
   EXPECT_EQ(answers.mean(0, 5), 2.0);  // the refined one of it
   EXPECT_EQ(answers.weights, (VectorXd(6) << 1, 1, 2, 0, 2, -1).finished());
   InferredTests all = makeTests();
-  all.needing = all.sampled;
-  all.near = {true, false};
+  all.near.all = {2};
+  all.wrong.all = {4};
   EXPECT_EQ(selectAnswers(all, MatrixXd::Ones(1, 1), kTruth).weights.size(), 0);
 }
 
