@@ -89,12 +89,13 @@ def read_csv(file):
 
 
 def read_figures(folder):
-    """Method -> its rows of methods.csv; what is predicted; processor seconds of the run; the experiment."""
+    """Method -> its rows of methods.csv, "infer" -> those of metrics.csv; what is predicted; processor seconds; the experiment."""
     rows = read_csv(folder / "methods.csv")
     methods = {
         method: [row for row in rows if row["method"] == method]
         for method in dict.fromkeys(row["method"] for row in rows)
     }
+    methods["infer"] = read_csv(folder / "metrics.csv")
     predicted = read_csv(folder / "cross_validation.csv") if (folder / "cross_validation.csv").exists() else []
     seconds = float((folder / "processor_seconds.txt").read_text())
     return methods, predicted, seconds, yaml.safe_load((folder / "resolved.yaml").read_text())
@@ -123,16 +124,17 @@ def make_row(name, figures):
     of_map = next(iter(methods.values()))
     refined = methods.get("refined", [])
     share = f"{100 * float(refined[0]['accepted']):.1f} %" if refined else "not refined"
-    simulations = refined[0]["median_simulations"] if refined else ""
+    answers = methods["infer"]
+    not_ok = f"{100 * float(answers[0]['not_ok']):.1f} %" if refined else ""
     cells = [
         f"[{make_title(name)}](#{make_title(name)})",
         span(of_map, "ratio_to_limit", 1),
         span(predicted, "limit_ratio", 1),
         span(of_map, "coverage95", 2),
         share,
-        span(refined, "ratio_to_limit", 2),
-        span(refined, "coverage95", 2),
-        simulations,
+        span(answers, "ratio_to_limit", 2),
+        span(answers, "coverage95", 2),
+        not_ok,
         describe_seconds(seconds),
     ]
     return "| " + " | ".join(cells) + " |"
@@ -141,7 +143,7 @@ def make_row(name, figures):
 def make_section(name, figures):
     methods, predicted, _, experiment = figures
     of_map = next(iter(methods.values()))
-    refined = {row["parameter"]: row for row in methods.get("refined", [])}
+    answers = {row["parameter"]: row for row in methods["infer"]}
     told = {row["parameter"]: row for row in predicted}
     lines = [
         f"## {make_title(name)}",
@@ -149,11 +151,11 @@ def make_section(name, figures):
         f"`experiments/{name}.yaml`: {experiment.get('description', '')}.",
         textwrap.fill(SHOWS.get(name, ""), 140),
         "",
-        "| parameter | limit % | map: sd % | ratio | predicted | coverage | refined: sd % | ratio | coverage |",
+        "| parameter | limit % | map: sd % | ratio | predicted | coverage | infer: sd % | ratio | coverage |",
         "|---|--:|--:|--:|--:|--:|--:|--:|--:|",
     ]
     for row in of_map:
-        parameter, answer = row["parameter"], refined.get(row["parameter"], {})
+        parameter, answer = row["parameter"], answers[row["parameter"]]
         cells = [
             parameter,
             number(row["limit_pct"], 3),
@@ -179,14 +181,15 @@ Written by `bench/mechanisms.py TWINMAP`: {count} mechanisms, each with its own 
 samples, the default map (a surrogate) and defaults otherwise, {threads}. Ratio: standard deviation of the errors
 over the information limit ([the experiment file](../reference/experiment-file/evaluation.md)), smallest and largest over the parameters. Predicted: the same as the map predicts it
 without the simulator. Coverage: share of true values within the 95 % intervals. Accepted: share of the test samples whose
-refinement on the simulator passed its test ([refinement](../explanation/refinement.md)); ratio and coverage are of these. Simulations: median of a
-refinement. Time: of a processor, for the whole run.
+refinement on the simulator passed its test ([refinement](../explanation/refinement.md)). Infer: what `twinmap infer` gives, refined or sampled
+([what the tables judge](../explanation/refinement.md#what-a-runs-tables-judge)); not ok: of which share it says so. Time: of a processor, for
+the whole run.
 
 ```sh
 twinmap run experiments/mechanisms/released_pendulum.yaml inverse_map=automatic design.train.samples=100 --out results/pendulum
 ```
 
-| mechanism | map: ratio | predicted | coverage | refined: accepted | ratio | coverage | simulations | time |
+| mechanism | map: ratio | predicted | coverage | refined: accepted | infer: ratio | coverage | not ok | time |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|
 """
 

@@ -36,7 +36,8 @@ Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev) {
   return stddev * z.unaryExpr(&calcStandardCrps);
 }
 
-Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictions) {
+Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truths, const Estimates& predictions) {
+  const Eigen::MatrixXd truth = predictions.repeat(truths);
   if (!predictions.mixtures.empty()) {
     return Eigen::MatrixXd::NullaryExpr(truth.rows(), truth.cols(), [&](Eigen::Index p, Eigen::Index i) {
       return takeMarginal(predictions.mixtures[static_cast<std::size_t>(i)], p).calcProbability(truth(p, i));
@@ -46,14 +47,16 @@ Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictio
   return z.unaryExpr(&calcNormalProbability);
 }
 
-std::vector<int> countPit(const Eigen::ArrayXd& pit) {
-  std::vector<int> counts(kPitBins, 0);
-  for (const double value : pit) {
-    if (std::isfinite(value)) {
-      ++counts[std::min(static_cast<int>(value * kPitBins), kPitBins - 1)];
+std::vector<int> countPit(const Eigen::ArrayXd& pit, const Eigen::VectorXd& weights) {
+  Eigen::ArrayXd counts = Eigen::ArrayXd::Zero(kPitBins);
+  for (Eigen::Index i = 0; i < pit.size(); ++i) {
+    if (std::isfinite(pit[i])) {
+      counts[std::min(static_cast<int>(pit[i] * kPitBins), kPitBins - 1)] +=
+          weights.size() > 0 ? weights[i] : 1.0;
     }
   }
-  return counts;
+  counts = counts.round().max(0.0);
+  return {counts.begin(), counts.end()};
 }
 
 }  // namespace twinmap

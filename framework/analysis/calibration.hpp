@@ -20,13 +20,15 @@ double calcTwoSidedQuantile(double probability);
 Eigen::ArrayXd calcCrps(const Eigen::ArrayXd& z, const Eigen::ArrayXd& stddev);
 
 /// Probability integral transform Phi((true - mean) / stddev), or that of the mixture, of each parameter and
-/// sample (p x n): uniform on [0, 1] where the predictive distributions are calibrated.
+/// sample (p x n; of Estimates::repeated columns too): uniform on [0, 1] where the predictive distributions
+/// are calibrated.
 Eigen::MatrixXd calcPit(const Eigen::MatrixXd& truth, const Estimates& predictions);
 
 constexpr int kPitBins = 10;
 
 /// Counts of `pit` in kPitBins equal bins of [0, 1]. Flat: calibrated; a hump: stddev too large; a U: too
-/// small; a slope: bias. Values that are not numbers are not counted.
-std::vector<int> countPit(const Eigen::ArrayXd& pit);
+/// small; a slope: bias. Values that are not numbers are not counted. weights: of how many samples each
+/// stands for (Estimates::weights), or empty; the counts are rounded.
+std::vector<int> countPit(const Eigen::ArrayXd& pit, const Eigen::VectorXd& weights = {});
 
 }  // namespace twinmap

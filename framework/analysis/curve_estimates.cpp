@@ -44,7 +44,10 @@ CurveEstimates estimateCurves(const ExperimentSpec& experiment, const Eigen::Mat
   }
   if (!points.derived.empty()) {
     const Eigen::Index drawn = std::min(kDrawnCurves, truth.cols());
-    result.values = evaluateDerived(DerivedQuantities(points), truth.leftCols(drawn), estimates, {});
+    Estimates each = estimates;
+    each.repeated.clear();
+    each.weights.resize(0);
+    result.values = evaluateDerived(DerivedQuantities(points), truth.leftCols(drawn), each, {});
   }
   return result;
 }

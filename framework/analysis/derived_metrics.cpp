@@ -22,6 +22,9 @@ Estimate takeEstimate(const Estimates& estimates, Index sample) {
   if (!estimates.mixtures.empty()) {
     estimate.mixture = estimates.mixtures[i];
   }
+  if (!estimates.draws.empty()) {
+    estimate.draws = estimates.draws[i];
+  }
   if (!estimates.ridges.empty()) {
     estimate.ridge = estimates.ridges[i];
   }
@@ -31,6 +34,13 @@ Estimate takeEstimate(const Estimates& estimates, Index sample) {
     estimate.interval_factors = {factors.of50.col(column), factors.of95.col(column)};
   }
   return estimate;
+}
+
+std::vector<ValueDistribution> propagate(const DerivedQuantities& quantities, const Estimate& estimate) {
+  const BoundedDraws& draws = estimate.draws;
+  return draws.isGiven()
+             ? quantities.propagateDraws(draws.points.topRows(quantities.countParameters()), draws.weights)
+             : quantities.propagate(estimate);
 }
 
 ParameterSamples takeQuantity(const DerivedEvaluation& evaluation, Index k) {
@@ -47,8 +57,9 @@ ParameterSamples takeQuantity(const DerivedEvaluation& evaluation, Index k) {
 
 }  // namespace
 
-DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const MatrixXd& truth,
-                                  const Estimates& estimates, const MatrixXd& limit_stddev) {
+DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const MatrixXd& truths,
+                                  const Estimates& estimates, const MatrixXd& limits) {
+  const MatrixXd truth = estimates.repeat(truths), limit_stddev = estimates.repeat(limits);
   const Index q = quantities.count(), n = truth.cols();
   DerivedEvaluation result{quantities.getSpecs(), quantities.calcAll(truth),
                            MatrixXd(q, n),        MatrixXd(q, n),
@@ -58,8 +69,8 @@ DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const Mat
   std::vector<IntervalFactor> factors;
   for (Index i = 0; i < n; ++i) {
     const Estimate estimate = takeEstimate(estimates, i);
-    const auto distributions = quantities.propagate(estimate);
-    factors.push_back(findLargestFactor(estimate));
+    const auto distributions = propagate(quantities, estimate);
+    factors.push_back(estimate.draws.isGiven() ? IntervalFactor{} : findLargestFactor(estimate));
     const DerivedEstimate derived = summarize(distributions, factors.back().of95);
     result.mean.col(i) = derived.mean;
     result.stddev.col(i) = derived.stddev;
@@ -74,8 +85,14 @@ DerivedEvaluation evaluateDerived(const DerivedQuantities& quantities, const Mat
     ParameterSamples samples = takeQuantity(result, k);
     samples.z = z.row(k).transpose().array();
     samples.factors = factors;
+    samples.weights = estimates.weights;
+    samples.repeated = estimates.repeated;
     result.metrics.push_back(calcMetrics(result.quantities[static_cast<std::size_t>(k)], samples));
   }
+  for (MatrixXd* values : {&result.truth, &result.mean, &result.stddev, &result.lower95, &result.upper95}) {
+    values->conservativeResize(Eigen::NoChange, truths.cols());
+  }
+  result.limit_stddev = limits;
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/analysis/jackknife.hpp"
+#include "framework/analysis/sample_terms.hpp"
 #include "framework/base/random/random.hpp"
 #include "framework/estimation/draws.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -87,7 +88,8 @@ Eigen::MatrixXd calcTerms(const Eigen::MatrixXd& truth, const Estimates& predict
 
 JointMetrics calcJointMetrics(const Eigen::MatrixXd& truth, const Estimates& estimates) {
   const JackknifeFigures figures = calcWithJackknife(
-      calcTerms(truth, estimates), [](const Eigen::VectorXd& mean, double) { return mean; });
+      sumUp(calcTerms(estimates.repeat(truth), estimates), estimates.weights, estimates.repeated),
+      [](const Eigen::VectorXd& mean, double) { return mean; });
   JointMetrics metrics;
   for (std::size_t i = 0; i < kJointColumns.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);

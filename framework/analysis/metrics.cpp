@@ -25,7 +25,9 @@ ParameterMetrics calcMetrics(const ParameterSpec& parameter, const ParameterSamp
   ParameterMetrics metrics;
   setFigures(estimates.value, metrics);
   setFigures(estimates.standard_error, metrics.se);
-  metrics.samples = static_cast<int>(samples.truth.size());
+  metrics.samples = static_cast<int>(samples.weights.size() > 0
+                                         ? (samples.weights.head(samples.count()).array() > 0.0).count()
+                                         : samples.count());
   return metrics;
 }
 

@@ -116,16 +116,40 @@ VectorXd toVector(const ParameterFigures& figures) {
 
 }  // namespace
 
+Eigen::MatrixXd sumUp(const Eigen::MatrixXd& terms, const VectorXd& weights,
+                      const std::vector<Index>& repeated) {
+  if (weights.size() == 0) {
+    return terms;
+  }
+  const Index n = terms.cols() - static_cast<Index>(repeated.size());
+  Eigen::MatrixXd weighted = terms;
+  for (Index i = 0; i < terms.cols(); ++i) {
+    if (weights[i] == 0.0) {
+      weighted.col(i).setZero();  // also of an infinite term
+    }
+  }
+  const VectorXd mean = weighted * weights / weights.sum();
+  weighted = ((weighted.colwise() - mean) * weights.asDiagonal()).eval();
+  Eigen::MatrixXd sums = weighted.leftCols(n);
+  for (std::size_t k = 0; k < repeated.size(); ++k) {
+    sums.col(repeated[k]) += weighted.col(n + static_cast<Index>(k));
+  }
+  return (static_cast<double>(n) / weights.sum() * sums).colwise() + mean;
+}
+
 ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Estimates& predictions,
                                const Eigen::MatrixXd& limit_stddev, Index row) {
-  const ArrayXd unknown = ArrayXd::Constant(truth.cols(), std::nan(""));
-  return {truth.row(row),
+  const ArrayXd unknown = ArrayXd::Constant(predictions.mean.cols(), std::nan(""));
+  return {predictions.repeat(truth.row(row)).transpose(),
           predictions.mean.row(row),
           predictions.stddev.row(row),
-          limit_stddev.size() == 0 ? unknown : limit_stddev.row(row).array(),
+          limit_stddev.size() == 0 ? unknown
+                                   : ArrayXd(predictions.repeat(limit_stddev.row(row)).transpose().array()),
           takeMarginals(predictions.mixtures, row),
           {},
-          takeFactors(predictions.interval_factors, row)};
+          takeFactors(predictions.interval_factors, row),
+          predictions.weights,
+          predictions.repeated};
 }
 
 SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSamples& samples) {
@@ -148,6 +172,7 @@ SampleTerms calcSampleTerms(const ParameterSpec& parameter, const ParameterSampl
   terms.row(kCrps) = (scores.crps / scale.abs()).transpose();
   terms.row(kSquaredLimit) = (samples.limit_stddev / scale).square().transpose();
   terms.row(kLimitSurprise) = (samples.limit_stddev.log() + (kLogRootTwoPi + 0.5)).transpose();
+  result.terms = sumUp(result.terms, samples.weights, samples.repeated);
   return result;
 }
 

@@ -15,7 +15,17 @@ struct ParameterSamples {
   std::vector<MarginalMixture> mixtures{};  ///< where the distributions are no normal ones; else empty
   Eigen::ArrayXd z{};  ///< the truths as normal quantiles, where known otherwise; else empty
   std::vector<IntervalFactor> factors{};  ///< where intervals are not those of the distributions; else empty
+  Eigen::VectorXd weights{};              ///< Estimates::weights, where given
+  std::vector<Eigen::Index> repeated{};   ///< Estimates::repeated
+
+  Eigen::Index count() const { return truth.size() - static_cast<Eigen::Index>(repeated.size()); }
 };
+
+/// What each of n samples adds to the mean of terms of the estimates (k x n + repeated) with their weights:
+/// the mean of the result is theirs, and it varies as they do. The terms themselves where there are no
+/// weights.
+Eigen::MatrixXd sumUp(const Eigen::MatrixXd& terms, const Eigen::VectorXd& weights,
+                      const std::vector<Eigen::Index>& repeated);
 
 /// Those of one row of p x n each; limit_stddev may be empty.
 ParameterSamples takeParameter(const Eigen::MatrixXd& truth, const Estimates& predictions,

@@ -84,6 +84,15 @@ Estimate Estimate::takeLikeliest() const {
   return {mixture.means.col(best), mixture.stddevs.col(best)};
 }
 
+MatrixXd Estimates::repeat(const MatrixXd& values) const {
+  if (repeated.empty() || values.cols() == 0) {
+    return values;
+  }
+  MatrixXd all(values.rows(), values.cols() + static_cast<Index>(repeated.size()));
+  all << values, values(Eigen::all, repeated);
+  return all;
+}
+
 void convert(const VectorXd& center, const VectorXd& unit, const VectorXd& stddev_scale,
              Estimates& estimates) {
   estimates.mean = (unit.asDiagonal() * estimates.mean).colwise() + center;

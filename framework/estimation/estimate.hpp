@@ -84,8 +84,17 @@ struct Estimates {
   /// Of each measurement, where the estimator gives mixtures; else empty.
   std::vector<Mixture> mixtures{};
   IntervalFactors interval_factors{};
-  std::vector<Mixture> ridges{};   ///< Estimate::ridge of each, where any has one; else empty
-  Eigen::MatrixXd limit_stddev{};  ///< what the measurements allow, as the estimator predicts it; or empty
+  std::vector<Mixture> ridges{};      ///< Estimate::ridge of each, where any has one; else empty
+  Eigen::MatrixXd limit_stddev{};     ///< what the measurements allow, as the estimator predicts it; or empty
+  std::vector<BoundedDraws> draws{};  ///< Estimate::draws of each, where any has some; else empty
+  /// Where figures of n samples are not of one estimate of each: of how many samples each stands for. Further
+  /// columns than n are then other estimates of the samples that `repeated` names, and may stand for less
+  /// than none: a few samples tell how figures of both kinds of estimates differ. Empty: each for its own.
+  Eigen::VectorXd weights{};
+  std::vector<Eigen::Index> repeated{};
+
+  /// Of values of the samples (r x n) the one beside each column.
+  Eigen::MatrixXd repeat(const Eigen::MatrixXd& values) const;
 };
 
 /// In other units, as convert() of a mixture; the mean and standard deviation of a mixture follow from it.

@@ -27,6 +27,29 @@ bool isCalibrated(const Estimator& map, const TrustModel* trust) {
   return map.isCalibrated() && (trust == nullptr || !trust->coverage.isShort());
 }
 
+OnlineWorkspace::OnlineWorkspace(const OnlineModel& model) : map(model.map->makeWorkspace()) {
+  if (model.trust) {
+    trust.emplace(*model.trust);
+  }
+}
+
+InferredMeasurement inferOnline(const OnlineModel& model, const Eigen::VectorXd& features,
+                                const Eigen::VectorXd& known, OnlineWorkspace& workspace) {
+  const TrustModel* trust = model.trust ? &*model.trust : nullptr;
+  InferredMeasurement inferred;
+  inferred.by_estimator = model.map->infer(features, known, *workspace.map);
+  inferred.estimator_is_calibrated = isCalibrated(*model.map, trust);
+  inferred.estimator_coverage_is_short = trust != nullptr && trust->coverage.isShort();
+  inferred.basins = model.map->listBasins(*workspace.map);
+  if (trust != nullptr) {
+    inferred.trust = judge(*trust, features, known, inferred.by_estimator, workspace.map->findExplanation(),
+                           *workspace.trust);
+    inferred.explanation = trust->makeSampledPoint(workspace.trust->explanation->point);
+    inferred.covariance = workspace.trust->explanation->calcCovariance();
+  }
+  return inferred;
+}
+
 Inferrer::Inferrer(const fs::path& run_or_maps) : Inferrer(readTrainedFile(findMaps(run_or_maps))) {}
 
 namespace {
@@ -45,34 +68,17 @@ MeasurementReader makeReader(const TrainedFile& loaded) {
 
 Inferrer::Inferrer(TrainedFile loaded)
     : reader_(makeReader(loaded)),
-      map_(std::move(loaded.model.map)),
-      trust_(std::move(loaded.model.trust)),
+      online_(std::move(loaded.model)),
       quantities_(makeDerivedQuantities(reader_.getExperiment())),
       prior_(findStatedPrior(reader_.getExperiment().model)),
       unused_(listUnused(reader_.getExperiment(), "parameters")) {}
 
-Inferrer::Workspace::Workspace(const Inferrer& inferrer) : map(inferrer.getMap().makeWorkspace()) {
-  if (inferrer.getTrustModel()) {
-    trust.emplace(*inferrer.getTrustModel());
-  }
-}
-
 InferredMeasurement Inferrer::infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
-                                    Workspace& workspace) const {
-  InferredMeasurement inferred;
+                                    OnlineWorkspace& workspace) const {
+  InferredMeasurement inferred = inferOnline(online_, features, known, workspace);
   inferred.quantities = quantities_;
   inferred.prior = prior_;
   inferred.unused = unused_;
-  inferred.by_estimator = map_->infer(features, known, *workspace.map);
-  inferred.estimator_is_calibrated = isCalibrated(*map_, trust_ ? &*trust_ : nullptr);
-  inferred.estimator_coverage_is_short = trust_ && trust_->coverage.isShort();
-  inferred.basins = map_->listBasins(*workspace.map);
-  if (trust_) {
-    inferred.trust = judge(*trust_, features, known, inferred.by_estimator, workspace.map->findExplanation(),
-                           *workspace.trust);
-    inferred.explanation = trust_->makeSampledPoint(workspace.trust->explanation->point);
-    inferred.covariance = workspace.trust->explanation->calcCovariance();
-  }
   return inferred;
 }
 

@@ -87,6 +87,18 @@ struct InferredMeasurement {
   }
 };
 
+/// The buffers of one thread; the model must outlive them.
+struct OnlineWorkspace {
+  explicit OnlineWorkspace(const OnlineModel& model);
+  std::unique_ptr<Estimator::Workspace> map;
+  std::optional<TrustWorkspace> trust;
+};
+
+/// Infers and judges by a trained model alone. features: d, finite; known: the inputs of the set-up (q).
+/// Cost: that of Estimator::infer() and judge().
+InferredMeasurement inferOnline(const OnlineModel& model, const Eigen::VectorXd& features,
+                                const Eigen::VectorXd& known, OnlineWorkspace& workspace);
+
 /// The maps.h5 of a finished run, given its folder or the file itself. Throws std::runtime_error where there
 /// is none.
 std::filesystem::path findMaps(const std::filesystem::path& run_or_maps);
@@ -106,26 +118,19 @@ class Inferrer {
   const ExperimentSpec& getExperiment() const { return reader_.getExperiment(); }
   const ResponseLayout& getLayout() const { return reader_.getLayout(); }
   const FeatureExtractor& getExtractor() const { return reader_.getExtractor(); }
-  const Estimator& getMap() const { return *map_; }
-  const std::optional<TrustModel>& getTrustModel() const { return trust_; }
+  const OnlineModel& getModel() const { return online_; }
+  const Estimator& getMap() const { return *online_.map; }
+  const std::optional<TrustModel>& getTrustModel() const { return online_.trust; }
 
-  struct Workspace {
-    explicit Workspace(const Inferrer& inferrer);
-    std::unique_ptr<Estimator::Workspace> map;
-    std::optional<TrustWorkspace> trust;
-  };
-
-  /// Infers and judges. features: d, finite; known: the inputs of the set-up (q). Cost: that of
-  /// Estimator::infer() and judge().
+  /// inferOnline(), with what the experiment says beside.
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
-                            Workspace& workspace) const;
+                            OnlineWorkspace& workspace) const;
 
  private:
   explicit Inferrer(TrainedFile loaded);
 
   MeasurementReader reader_;
-  std::shared_ptr<const Estimator> map_;
-  std::optional<TrustModel> trust_;
+  OnlineModel online_;
   std::shared_ptr<const DerivedQuantities> quantities_;  // none where nothing is derived
   std::shared_ptr<const StatedPrior> prior_;             // null where all is uniform
   std::vector<std::string> unused_;                      // parameters

@@ -8,16 +8,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-RefinementTask SimulatorRefiner::makeTask(const InferredMeasurement& inferred, const VectorXd& features,
-                                          const VectorXd& known, const TrustModel* trust) const {
+RefinementTask makeTask(const ModelSpec& model, const TrustModel* trust, const InferredMeasurement& inferred,
+                        const VectorXd& features, const VectorXd& known) {
   return makeRefinementTask(
-      getModelSpec(), trust, features,
+      model, trust, features,
       {inferred.by_estimator.takeLikeliest().mean, inferred.explanation, known, inferred.covariance});
 }
 
-Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const VectorXd& features,
-                                 const VectorXd& known, const TrustModel* trust) const {
-  Refined refined = twinmap::refine(updSimulator(), getModel(), makeTask(inferred, features, known, trust));
+void takeRefined(Refined refined, const TrustModel* trust, InferredMeasurement& inferred) {
   if (isMultimodal(inferred.by_estimator.mixture)) {
     rejectAsMultimodal(refined);
   }
@@ -27,13 +25,6 @@ Refined SimulatorRefiner::refine(const InferredMeasurement& inferred, const Vect
     refined.stddev.conservativeResize(p);
     refined.covariance.conservativeResize(p, p);
   }
-  return refined;
-}
-
-void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& known,
-                                      const TrustModel* trust, InferredMeasurement& inferred) const {
-  inferred.refined = refine(inferred, features, known, trust);
-  const Refined& refined = *inferred.refined;
   if (trust != nullptr) {
     SimulatorResidual found{
         refined.residual, refined.calcReducedChiSquare(), refined.degrees, refined.explained, {}, {}};
@@ -44,6 +35,13 @@ void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& 
     }
     inferred.trust = judgeAnew(*trust, *inferred.trust, found);
   }
+  inferred.refined = std::move(refined);
+}
+
+void SimulatorRefiner::refineAndJudge(const VectorXd& features, const VectorXd& known,
+                                      const TrustModel* trust, InferredMeasurement& inferred) const {
+  const RefinementTask task = makeTask(getModelSpec(), trust, inferred, features, known);
+  takeRefined(refine(updSimulator(), getModel(), task), trust, inferred);
 }
 
 MatrixXd SimulatorRefiner::listStarts(const InferredMeasurement& inferred, const VectorXd& features,
@@ -52,7 +50,7 @@ MatrixXd SimulatorRefiner::listStarts(const InferredMeasurement& inferred, const
   for (Index k = 0; k < inferred.basins.cols(); ++k) {
     points.emplace_back(inferred.basins.col(k));
   }
-  for (const RefinementStart& start : makeTask(inferred, features, known, trust).starts) {
+  for (const RefinementStart& start : makeTask(getModelSpec(), trust, inferred, features, known).starts) {
     points.push_back(start.point);
   }
   for (Index c = 0; c < inferred.by_estimator.mixture.countComponents(); ++c) {
@@ -96,8 +94,8 @@ Refined SimulatorRefiner::fitNuisance(const VectorXd& point, const VectorXd& fea
     held.point = point;
     return held;
   }
-  return twinmap::refine(updSimulator(), getModel(),
-                         {features, {{"given", point}}, nuisance, false, {}, findPrior(getModelSpec())});
+  return refine(updSimulator(), getModel(),
+                {features, {{"given", point}}, nuisance, false, {}, findPrior(getModelSpec())});
 }
 
 }  // namespace twinmap

@@ -6,19 +6,23 @@
 
 namespace twinmap {
 
+/// The search that refines what a trained model inferred (makeRefinementTask). known: q.
+RefinementTask makeTask(const ModelSpec& model, const TrustModel* trust, const InferredMeasurement& inferred,
+                        const Eigen::VectorXd& features, const Eigen::VectorXd& known);
+
+/// What the end of that search says: sets the refined estimate, not accepted where the estimator's has
+/// several values, and the measurement's trust (judgeAnew). Its covariance and standard deviations are those
+/// of the updating parameters.
+void takeRefined(Refined refined, const TrustModel* trust, InferredMeasurement& inferred);
+
 /// What an estimator inferred from a measurement, improved on the simulator: refined, or in the place of its
 /// posterior; and what follows for the trust in it.
 class SimulatorRefiner : public SimulatorSampler {
  public:
   using SimulatorSampler::SimulatorSampler;
 
-  /// Searches all unknown parameters from what was inferred (makeRefinementTask). known: q. The covariance
-  /// and the standard deviations are those of the updating parameters. Throws std::invalid_argument for a
-  /// feature without noise.
-  Refined refine(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
-                 const Eigen::VectorXd& known, const TrustModel* trust) const;
-
-  /// refine(), and what follows for the measurement's trust (judgeAnew): sets both.
+  /// Searches all unknown parameters from what was inferred (makeTask, takeRefined). Throws
+  /// std::invalid_argument for a feature without noise.
   void refineAndJudge(const Eigen::VectorXd& features, const Eigen::VectorXd& known, const TrustModel* trust,
                       InferredMeasurement& inferred) const;
 
@@ -34,8 +38,6 @@ class SimulatorRefiner : public SimulatorSampler {
   Refined fitNuisance(const Eigen::VectorXd& point, const Eigen::VectorXd& features) const;
 
  private:
-  RefinementTask makeTask(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
-                          const Eigen::VectorXd& known, const TrustModel* trust) const;
   Eigen::MatrixXd listStarts(const InferredMeasurement& inferred, const Eigen::VectorXd& features,
                              const Eigen::VectorXd& known, const TrustModel* trust) const;
 };

@@ -70,6 +70,19 @@ Row makeMetricsRow(const RunSummary& run, const std::vector<MetricsColumn>& colu
   return row;
 }
 
+/// Columns of the predictions, each with the column of its test sample.
+std::vector<std::pair<Eigen::Index, Eigen::Index>> listColumns(const RunSummary& run) {
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> columns;
+  const auto n = static_cast<Eigen::Index>(run.test_indices.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    columns.emplace_back(i, i);
+  }
+  for (const Eigen::Index sample : run.evaluation.predictions.repeated) {
+    columns.emplace_back(static_cast<Eigen::Index>(columns.size()), sample);
+  }
+  return columns;
+}
+
 }  // namespace
 
 std::string makeMetricsCsv(const RunSummary& run) {
@@ -82,6 +95,9 @@ std::string makeMetricsCsv(const RunSummary& run) {
   for (const MetricsColumn& column : columns) {
     header.push_back(column.name + "_se");
   }
+  if (run.evaluation.answers) {
+    header.emplace_back("not_ok");
+  }
   std::vector<Row> rows{header};
   for (std::size_t p = 0; p < run.parameters.size(); ++p) {
     rows.push_back(makeMetricsRow(run, columns, p));
@@ -90,6 +106,9 @@ std::string makeMetricsCsv(const RunSummary& run) {
     for (std::size_t k = 0; k < run.evaluation.derived->quantities.size(); ++k) {
       rows.push_back(makeDerivedRow(*run.evaluation.derived, columns, k));
     }
+  }
+  for (std::size_t i = 1; i < rows.size() && run.evaluation.answers; ++i) {
+    rows[i].push_back(toText(run.evaluation.answers->calcNotOk()));
   }
   return makeCsv(rows);
 }
@@ -124,20 +143,26 @@ std::string makePredictionsCsv(const RunSummary& run) {
   if (factors.isGiven()) {
     rows[0].insert(rows[0].end(), {"interval_factor50", "interval_factor95"});
   }
-  for (std::size_t i = 0; i < run.test_indices.size(); ++i) {
+  const Eigen::VectorXd& weights = run.evaluation.predictions.weights;
+  if (weights.size() > 0) {
+    rows[0].emplace_back("stands_for");
+  }
+  for (const auto& [column, sample] : listColumns(run)) {
     for (std::size_t p = 0; p < run.parameters.size(); ++p) {
       const auto row = static_cast<Eigen::Index>(p);
-      const auto column = static_cast<Eigen::Index>(i);
-      rows.push_back({std::to_string(run.test_indices[i]), run.parameters[p].name.text,
-                      toText(run.evaluation.truth(row, column)),
+      rows.push_back({std::to_string(run.test_indices[static_cast<std::size_t>(sample)]),
+                      run.parameters[p].name.text, toText(run.evaluation.truth(row, sample)),
                       toText(run.evaluation.predictions.mean(row, column)),
                       toText(run.evaluation.predictions.stddev(row, column))});
       if (has_limit) {
-        rows.back().push_back(toText(run.evaluation.limit_stddev(row, column)));
+        rows.back().push_back(toText(run.evaluation.limit_stddev(row, sample)));
       }
       if (factors.isGiven()) {
         rows.back().insert(rows.back().end(),
                            {toText(factors.of50(row, column)), toText(factors.of95(row, column))});
+      }
+      if (weights.size() > 0) {
+        rows.back().push_back(toText(weights[column]));
       }
     }
   }
@@ -182,14 +207,15 @@ std::string makeCurvesCsv(const RunSummary& run) {
 
 std::string makeComponentsCsv(const RunSummary& run) {
   std::vector<Row> rows{{"sample", "component", "weight", "parameter", "mean", "stddev"}};
-  for (std::size_t i = 0; i < run.evaluation.predictions.mixtures.size(); ++i) {
-    const Mixture& mixture = run.evaluation.predictions.mixtures[i];
+  const std::vector<Mixture>& mixtures = run.evaluation.predictions.mixtures;
+  for (const auto& [column, of] : listColumns(run)) {
+    const Mixture& mixture = mixtures[static_cast<std::size_t>(column)];
+    const std::string sample = std::to_string(run.test_indices[static_cast<std::size_t>(of)]);
     for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
       for (std::size_t p = 0; p < run.parameters.size(); ++p) {
         const auto row = static_cast<Eigen::Index>(p);
-        rows.push_back({std::to_string(run.test_indices[i]), std::to_string(c), toText(mixture.weights[c]),
-                        run.parameters[p].name.text, toText(mixture.means(row, c)),
-                        toText(mixture.stddevs(row, c))});
+        rows.push_back({sample, std::to_string(c), toText(mixture.weights[c]), run.parameters[p].name.text,
+                        toText(mixture.means(row, c)), toText(mixture.stddevs(row, c))});
       }
     }
   }

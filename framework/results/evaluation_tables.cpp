@@ -48,6 +48,17 @@ CsvRow addFigures(CsvRow row, const ParameterFigures& figures, bool with_limit =
   return row;
 }
 
+/// The method of a test sample's answer and its statuses; empty of one that was not sampled but would be.
+void addAnswer(const std::optional<AnswerSummary>& answers, std::size_t sample, CsvRow& row) {
+  const bool is_known = answers && answers->weights[static_cast<Index>(sample)] > 0.0;
+  std::string statuses;
+  for (const std::string& status :
+       is_known ? answers->answers[sample].statuses : std::vector<std::string>()) {
+    statuses += (statuses.empty() ? "" : "; ") + status;
+  }
+  row.insert(row.end(), {is_known ? answers->answers[sample].method : "", statuses});
+}
+
 }  // namespace
 
 std::string makeFeaturesCsv(const RunSummary& run) {
@@ -184,8 +195,8 @@ std::string makeMethodsCsv(const RunSummary& run) {
 }
 
 std::string makeRefinedCsv(const RunSummary& run) {
-  CsvRow header{"sample",   "status",     "start",       "chi_square",
-                "distance", "iterations", "simulations", "message"};
+  CsvRow header{"sample",     "status",      "start",   "chi_square", "distance",
+                "iterations", "simulations", "message", "answer",     "statuses"};
   for (const ParameterSpec& parameter : run.parameters) {
     for (const char* column : {"_true", "_refined", "_stddev"}) {
       header.push_back(parameter.name.text + column);
@@ -197,6 +208,7 @@ std::string makeRefinedCsv(const RunSummary& run) {
     rows.push_back({std::to_string(run.test_indices[i]), toString(one.status), one.start,
                     toText(one.chi_square), toText(one.distance), std::to_string(one.iterations),
                     std::to_string(one.simulations), one.message});
+    addAnswer(run.evaluation.answers, i, rows.back());
     for (Index j = 0; j < run.evaluation.truth.rows(); ++j) {
       rows.back().push_back(toText(run.evaluation.truth(j, static_cast<Index>(i))));
       rows.back().push_back(one.isAccepted() ? toText(one.mean[j]) : "");

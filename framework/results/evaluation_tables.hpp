@@ -44,8 +44,9 @@ std::string makeMapsCsv(const RunSummary& run);
 /// samples, the limit too.
 std::string makeMethodsCsv(const RunSummary& run);
 
-/// refined.csv: sample, status, start, chi_square, distance, iterations, simulations, message; then for each
-/// parameter NAME_true, NAME_refined, NAME_stddev, the last two only where it is accepted.
+/// refined.csv: sample, status, start, chi_square, distance, iterations, simulations, message, answer,
+/// statuses; then for each parameter NAME_true, NAME_refined, NAME_stddev, the last two only where it is
+/// accepted.
 std::string makeRefinedCsv(const RunSummary& run);
 
 }  // namespace twinmap

@@ -30,12 +30,31 @@ std::vector<Mixture> readMixtures(const fs::path& path, const RunFolder& run) {
   return readComponentsFile(path / "components.csv", names, samples);
 }
 
+/// Leaves the answers that tables are of: not those that others stand for, nor the refined ones beside them.
+void dropUnsampled(RunFolder& run) {
+  std::vector<CsvRow> rows;
+  std::vector<Mixture> mixtures;
+  const std::size_t parameters = run.experiment.model.parameters.size();
+  for (std::size_t row = 0; row < run.predictions.rows.size(); ++row) {
+    if (run.predictions.getNumber(row, "stands_for") <= 0.0) {
+      continue;
+    }
+    rows.push_back(run.predictions.rows[row]);
+    if (row % parameters == 0 && !run.mixtures.empty()) {
+      mixtures.push_back(run.mixtures[row / parameters]);
+    }
+  }
+  run.predictions.rows = std::move(rows);
+  run.mixtures = std::move(mixtures);
+}
+
 void readTables(const fs::path& path, RunFolder& run) {
   run.metrics = readCsvFile(path / "metrics.csv");
   run.joint = readCsvFile(path / "joint.csv");
   run.methods = readCsvFile(path / "methods.csv");
   run.predictions = readCsvFile(path / "predictions.csv");
   run.mixtures = readMixtures(path, run);
+  dropUnsampled(run);
   run.training = readCsvFile(path / "training.csv");
   run.chains = readCsvFile(path / "chains.csv");
   run.hyperparameters = readCsvFile(path / "hyperparameters.csv");

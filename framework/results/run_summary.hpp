@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -121,13 +122,45 @@ struct BaselineSummary {
 
 /// How well a method infers the test samples.
 struct MethodSummary {
-  std::string method;  ///< "gp", "surrogate", "network", "refined", "posterior"
+  std::string method;  ///< "gp", "surrogate", "network", "refined", "posterior", "sampled"
   Eigen::Index samples = 0, accepted = 0;
   int median_simulations = 0;             ///< of a measurement
   std::vector<ParameterMetrics> metrics;  ///< of the accepted
   /// Of refined estimates, where exact posteriors are known: the share that differs from them by more than .3
   /// of their standard deviations.
   std::optional<double> apart_from_posterior{};
+};
+
+/// What `twinmap infer` says of a test sample: by which method, and with which statuses.
+struct TestAnswer {
+  std::string method;  ///< Estimate::getMethod()
+  std::vector<std::string> statuses;
+
+  bool has(const std::string& status) const {
+    return std::find(statuses.begin(), statuses.end(), status) != statuses.end();
+  }
+};
+
+/// The answers of `twinmap infer` that tables judge, where those are refined.
+struct AnswerSummary {
+  std::vector<TestAnswer> answers;  ///< n
+  /// n, how many samples each stands for: 0 of those that need a posterior and were not sampled.
+  Eigen::VectorXd weights;
+  std::size_t needing = 0, sampled = 0;  ///< of the posterior on the simulator
+
+  /// The share of the test samples whose answer fulfils a condition.
+  template <class Condition>
+  double calcShare(const Condition& condition) const {
+    double share = 0.0;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      share += condition(answers[i]) ? weights[static_cast<Eigen::Index>(i)] : 0.0;
+    }
+    return share / static_cast<double>(answers.size());
+  }
+  /// The share of which anything is said but "ok".
+  double calcNotOk() const {
+    return calcShare([](const TestAnswer& answer) { return !answer.statuses.empty() && !answer.has("ok"); });
+  }
 };
 
 /// What one online update costs: the inference of all parameters from one feature vector.
@@ -160,8 +193,9 @@ struct Evaluation {
   std::vector<PosteriorComparison> posteriors;
   std::optional<PosteriorCalibration> calibration;
   std::vector<BaselineSummary> baselines;
-  std::vector<Refined> refined;        ///< n; empty where nothing was refined
-  std::vector<MethodSummary> methods;  ///< empty where nothing was refined
+  std::vector<Refined> refined;          ///< n; empty where nothing was refined
+  std::optional<AnswerSummary> answers;  ///< none where nothing was refined
+  std::vector<MethodSummary> methods;    ///< empty where nothing was refined
   std::vector<MapComparison> maps;
   std::optional<DerivedEvaluation> derived;  ///< where the experiment derives quantities
   CurveEstimates curves;                     ///< of some samples, where the model has curves

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
@@ -66,23 +68,65 @@ std::vector<Row> makeRows(const RunSummary& run, std::string (*escape)(const std
   return rows;
 }
 
-/// How many of the estimates are refined, where any was to be.
-std::string makeRefinementLegend(const RunSummary& run) {
-  const std::vector<Refined>& refined = run.evaluation.refined;
-  if (refined.empty()) {
+/// "multimodal 12 %, at_bounds 1 %": each status but ok, the most frequent first.
+std::string listStatuses(const AnswerSummary& answers) {
+  constexpr double kPercent = 100.0;
+  std::set<std::string> names;
+  for (const TestAnswer& answer : answers.answers) {
+    names.insert(answer.statuses.begin(), answer.statuses.end());
+  }
+  names.erase("ok");
+  std::vector<std::pair<double, std::string>> shares;
+  for (const std::string& name : names) {
+    const double share = answers.calcShare([&](const TestAnswer& answer) { return answer.has(name); });
+    if (share > 0.0) {
+      shares.emplace_back(-share, name);
+    }
+  }
+  std::sort(shares.begin(), shares.end());
+  std::string text;
+  for (const auto& [share, name] : shares) {
+    text += fmt::format("{}{} {:.3g} %", text.empty() ? "" : ", ", name, -kPercent * share);
+  }
+  return text;
+}
+
+/// How the estimates were made, and what `twinmap infer` says against them.
+std::string makeAnswerLegend(const RunSummary& run) {
+  constexpr double kPercent = 100.0;
+  if (!run.evaluation.answers) {
     return "";
   }
+  const AnswerSummary& answers = *run.evaluation.answers;
+  const std::vector<Refined>& refined = run.evaluation.refined;
   const auto accepted =
       std::count_if(refined.begin(), refined.end(), [](const Refined& one) { return one.isAccepted(); });
-  return fmt::format("Refined on the simulator: {} of {} estimates; methods.csv has the quick ones too.\n",
-                     accepted, refined.size());
+  std::string text =
+      fmt::format("Refined on the simulator: {} of {} estimates; methods.csv has the quick ones too.\n",
+                  accepted, refined.size());
+  if (answers.needing > 0) {
+    text += fmt::format("Replaced by the posterior on the simulator, as by infer: {} estimates{}.\n",
+                        answers.needing,
+                        answers.sampled < answers.needing
+                            ? fmt::format("; {} of these were sampled and stand for all", answers.sampled)
+                            : "");
+  }
+  if (const double share = answers.calcNotOk(); share > 0.0) {
+    text += fmt::format("Not ok by infer: {:.3g} % of the test samples ({}).\n", kPercent * share,
+                        listStatuses(answers));
+  }
+  if (answers.calcShare([](const TestAnswer& answer) { return answer.has("multimodal"); }) > 0.0) {
+    text +=
+        "Of several values that fit (multimodal), errors are to the nearest; intervals hold all of them.\n";
+  }
+  return text;
 }
 
 }  // namespace
 
 std::string makeMarkdownTable(const RunSummary& run) {
   return makeMarkdownRows(makeRows(run, escapeMarkdown), kTextColumns) + "\n" + kLegend +
-         makeRefinementLegend(run);
+         makeAnswerLegend(run);
 }
 
 std::string makeLatexTable(const RunSummary& run) {

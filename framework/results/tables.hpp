@@ -9,7 +9,7 @@ namespace twinmap {
 /// metrics.csv: one row a parameter, then one a derived quantity; columns parameter, unit, lower, upper,
 /// kFigureColumns (limit_pct and ratio_to_limit only where the limit is known), loo_sd_pct, loo_coverage95,
 /// loo_nlpd (empty where not available), nlml, test_samples, then the standard error of each figure as
-/// NAME_se.
+/// NAME_se, and not_ok where answers were refined (AnswerSummary).
 std::string makeMetricsCsv(const RunSummary& run);
 
 /// joint.csv: metric, value, se; one row each of kJointColumns.
@@ -22,8 +22,8 @@ std::string makePitCsv(const RunSummary& run);
 std::string makeComponentsCsv(const RunSummary& run);
 
 /// predictions.csv: sample, parameter, true, inferred, stddev, limit_stddev where the limit is known,
-/// interval_factor50 and interval_factor95 where intervals are not those of normal distributions; all
-/// parameters of a sample, then the next.
+/// interval_factor50 and interval_factor95 where intervals are not those of normal distributions, stands_for
+/// where samples stand for others (Estimates::weights); all parameters of a sample, then the next.
 std::string makePredictionsCsv(const RunSummary& run);
 
 /// derived.csv: sample, parameter (a derived quantity), true, inferred, stddev, lower, upper (of 95 %),

@@ -86,11 +86,14 @@ double calcSeveralShare(const RunSummary& run, std::size_t p) {
   constexpr std::size_t kMax = 200;
   const std::vector<Mixture>& mixtures = run.evaluation.predictions.mixtures;
   const std::size_t count = std::min(mixtures.size(), kMax);
-  int several = 0;
+  const Eigen::VectorXd& weights = run.evaluation.predictions.weights;
+  double several = 0.0, all = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
-    several += isMultimodal(takeMarginal(mixtures[i], Index(p))) ? 1 : 0;
+    const double weight = weights.size() > 0 ? weights[Index(i)] : 1.0;
+    all += weight;
+    several += weight > 0.0 && isMultimodal(takeMarginal(mixtures[i], Index(p))) ? weight : 0.0;
   }
-  return count > 0 ? double(several) / double(count) : 0.0;
+  return all > 0.0 ? several / all : 0.0;
 }
 
 /// Whether errors and standard deviations are those between several modes, mostly.

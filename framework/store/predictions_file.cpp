@@ -2,7 +2,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "framework/base/text/csv.hpp"
@@ -27,6 +29,13 @@ class Rows {
     return value;
   }
 
+  const std::string& getText(std::size_t row, const std::string& column) const {
+    return table_.getText(row, column);
+  }
+  double getNumberOrNan(std::size_t row, const std::string& column) const {
+    return table_.getNumber(row, column);
+  }
+
   void requireText(std::size_t row, const std::string& column, const std::string& expected) const {
     if (table_.getText(row, column) != expected) {
       fail(row, column + " '" + table_.getText(row, column) + "' must be '" + expected + "'");
@@ -38,6 +47,39 @@ class Rows {
   const CsvTable& table_;
 };
 
+/// Without those that are there again behind all, as Estimates::repeated.
+Eigen::Index countSamples(const CsvTable& table, std::size_t parameters) {
+  std::set<std::string> samples;
+  for (std::size_t row = 0; row < table.rows.size(); row += parameters) {
+    samples.insert(table.getText(row, "sample"));
+  }
+  return static_cast<Eigen::Index>(samples.size());
+}
+
+/// The numbers of a column of the predictions, and of its sample where it is the first of that.
+void readColumn(const Rows& rows, const std::vector<std::string>& parameters, Eigen::Index column,
+                StoredPredictions& stored) {
+  const auto count = static_cast<Eigen::Index>(parameters.size());
+  const std::string& sample = rows.getText(static_cast<std::size_t>(column * count), "sample");
+  for (Eigen::Index p = 0; p < count; ++p) {
+    const auto row = static_cast<std::size_t>(column * count + p);
+    rows.requireText(row, "sample", sample);
+    rows.requireText(row, "parameter", parameters[static_cast<std::size_t>(p)]);
+    stored.predictions.mean(p, column) = rows.getNumber(row, "inferred");
+    stored.predictions.stddev(p, column) = rows.getNumber(row, "stddev");
+    if (stored.predictions.interval_factors.isGiven()) {
+      stored.predictions.interval_factors.set(
+          p, column, {rows.getNumber(row, "interval_factor50"), rows.getNumber(row, "interval_factor95")});
+    }
+    if (column < stored.truth.cols()) {
+      stored.truth(p, column) = rows.getNumber(row, "true");
+    }
+    if (column < stored.limit_stddev.cols() && stored.limit_stddev.rows() > 0) {
+      stored.limit_stddev(p, column) = rows.getNumberOrNan(row, "limit_stddev");
+    }
+  }
+}
+
 }  // namespace
 
 StoredPredictions readPredictionsFile(const std::filesystem::path& path,
@@ -48,32 +90,31 @@ StoredPredictions readPredictionsFile(const std::filesystem::path& path,
     throw std::runtime_error(path.string() + ": must have a row for each test sample and parameter");
   }
   const auto count = static_cast<Eigen::Index>(parameters.size());
-  const auto samples = static_cast<Eigen::Index>(table.rows.size()) / count;
+  const auto columns = static_cast<Eigen::Index>(table.rows.size()) / count;
+  const Eigen::Index samples = countSamples(table, parameters.size());
   StoredPredictions stored;
   stored.truth.resize(count, samples);
-  stored.predictions = {stored.truth, stored.truth};
+  stored.predictions = {Eigen::MatrixXd(count, columns), Eigen::MatrixXd(count, columns)};
   if (table.hasColumn("interval_factor95")) {
-    stored.predictions.interval_factors = {stored.truth, stored.truth};
+    stored.predictions.interval_factors = {stored.predictions.mean, stored.predictions.mean};
+  }
+  if (table.hasColumn("stands_for")) {
+    stored.predictions.weights.resize(columns);
   }
   stored.limit_stddev.resize(table.hasColumn("limit_stddev") ? count : 0, samples);
-  for (Eigen::Index i = 0; i < samples; ++i) {
+  for (Eigen::Index i = 0; i < columns; ++i) {
     const auto first = static_cast<std::size_t>(i * count);
-    stored.samples.push_back(static_cast<int>(rows.getNumber(first, "sample")));
-    for (Eigen::Index p = 0; p < count; ++p) {
-      const std::size_t row = first + static_cast<std::size_t>(p);
-      rows.requireText(row, "sample", std::to_string(stored.samples.back()));
-      rows.requireText(row, "parameter", parameters[static_cast<std::size_t>(p)]);
-      stored.truth(p, i) = rows.getNumber(row, "true");
-      stored.predictions.mean(p, i) = rows.getNumber(row, "inferred");
-      stored.predictions.stddev(p, i) = rows.getNumber(row, "stddev");
-      if (stored.predictions.interval_factors.isGiven()) {
-        stored.predictions.interval_factors.set(
-            p, i, {rows.getNumber(row, "interval_factor50"), rows.getNumber(row, "interval_factor95")});
-      }
-      if (stored.limit_stddev.rows() > 0) {
-        stored.limit_stddev(p, i) = table.getNumber(row, "limit_stddev");
-      }
+    const auto sample = static_cast<int>(rows.getNumber(first, "sample"));
+    if (i < samples) {
+      stored.samples.push_back(sample);
+    } else {
+      const auto of = std::find(stored.samples.begin(), stored.samples.end(), sample);
+      stored.predictions.repeated.push_back(of - stored.samples.begin());
     }
+    if (stored.predictions.weights.size() > 0) {
+      stored.predictions.weights[i] = rows.getNumber(first, "stands_for");
+    }
+    readColumn(rows, parameters, i, stored);
   }
   return stored;
 }

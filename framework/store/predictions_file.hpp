@@ -10,7 +10,7 @@ namespace twinmap {
 
 /// predictions.csv as matrices: p x n, in the parameters' units.
 struct StoredPredictions {
-  std::vector<int> samples;  ///< index in the test set of each column
+  std::vector<int> samples;  ///< index in the test set of each column of the truth
   Eigen::MatrixXd truth;
   Estimates predictions;
   Eigen::MatrixXd limit_stddev;  ///< NaN where it is not known; empty where the file has no such column

@@ -127,7 +127,8 @@ const std::vector<NoticeText> kAccuracy{
      "The estimator takes its errors for larger than they are."},
     {Notice::kMultimodalTests, "multimodal_tests", false, kInfo,
      "fraction of the test samples with several separate estimates: {0}",
-     "Measure another output to separate them; errors and sd are those of all modes together.",
+     "Measure another output to separate them; errors are to the nearest where estimates are refined, else "
+     "to the mean of all.",
      "More than one set of parameter values fits the same response."},
     {Notice::kAboveLimit, "above_limit", false, kDegraded,
      "the estimation error exceeds the information limit by these factors: {0}", "{1}",

@@ -27,7 +27,7 @@ PosteriorSampler makeSampler(const Inferrer& inferrer, const SimulatorPosteriorO
 
 MeasurementSession::MeasurementSession(const Inferrer& inferrer, const SessionOptions& options)
     : inferrer_(inferrer),
-      workspace_(inferrer),
+      workspace_(inferrer.getModel()),
       posterior_options_(makePosteriorOptions(
           inferrer.getExperiment(),
           options.posterior_draws != 0 ? options.posterior_draws : SimulatorPosteriorOptions{}.draws)) {
@@ -110,7 +110,9 @@ InferredMeasurement MeasurementSession::infer(const Eigen::VectorXd& features, c
   if (refines_) {
     simulator_->refineAndJudge(features, known, trust, inferred);
   }
-  if (samples_always_ || (samples_where_needed_ && needsPosterior(inferrer_, inferred))) {
+  if (samples_always_ ||
+      (samples_where_needed_ && needsPosterior(inferred, inferrer_.getExperiment().model.parameters,
+                                               inferrer_.getExtractor().getInfos()))) {
     simulator_->sampleAndJudge(features, known, trust, posterior_options_, inferred);
   }
   if (sampler_) {

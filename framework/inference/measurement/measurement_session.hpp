@@ -67,7 +67,7 @@ class MeasurementSession final : public MeasurementInference {
                         const InferredMeasurement& inferred) override;
 
   const Inferrer& inferrer_;
-  Inferrer::Workspace workspace_;
+  OnlineWorkspace workspace_;
   std::optional<SimulatorRefiner> simulator_;  // where it may be asked
   std::optional<PosteriorSampler> sampler_;    // where the surrogate's posterior was asked for
   std::string doubt_;                          // PosteriorEstimate::doubt of what it samples

@@ -27,10 +27,14 @@ bool isOfStatedNoise(const InferredMeasurement& inferred, const std::vector<Feat
 
 }  // namespace
 
-bool needsPosterior(const Inferrer& inferrer, const InferredMeasurement& inferred) {
+bool mayBeWrong(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& infos) {
   return !inferred.refined->isAccepted() || inferred.basins.cols() > 1 || inferred.coverage_is_short ||
-         crossesBounds(selectEstimate(inferred), inferrer.getExperiment().model.parameters) ||
-         !isOfStatedNoise(inferred, inferrer.getExtractor().getInfos());
+         !isOfStatedNoise(inferred, infos);
+}
+
+bool needsPosterior(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
+                    const std::vector<FeatureInfo>& infos) {
+  return mayBeWrong(inferred, infos) || crossesBounds(selectEstimate(inferred), parameters);
 }
 
 }  // namespace twinmap

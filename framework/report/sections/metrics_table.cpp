@@ -76,7 +76,8 @@ void addMetrics(const RunFolder& run, Page& page) {
   }
   constexpr std::size_t kTextColumns = 2;
   const std::vector<ShownColumn> columns =
-      showFigures({{"parameter", "parameter"}, {"unit", "unit"}, {"lower", "lower"}, {"upper", "upper"}});
+      showFigures({{"parameter", "parameter"}, {"unit", "unit"}, {"lower", "lower"}, {"upper", "upper"}},
+                  {{"not_ok", "not ok"}});
   page.texts.emplace_back("metrics-csv", makeCsv(metrics));
   page.texts.emplace_back("metrics-markdown",
                           makeMarkdownRows(makeTextRows(metrics, columns, escapeMarkdown), kTextColumns));
@@ -94,6 +95,10 @@ void addMetrics(const RunFolder& run, Page& page) {
               std::string(metrics.hasColumn("limit_pct")
                               ? "The limit is the smallest sd that the noise of the data allows any method. "
                               : "") +
+              (metrics.hasColumn("not_ok")
+                   ? "Not ok is the fraction of the test samples of which twinmap infer says so (refined.csv "
+                     "has its statuses). "
+                   : "") +
               (metrics.hasColumn("sd_pct_se")
                    ? "The digits in parentheses are the Monte Carlo standard error of the last digits."
                    : ""),

@@ -51,11 +51,14 @@ std::string makeLead(const RunFolder& run) {
     return "Estimates " + what + ".";
   }
   const double ratio = calcMean(run.metrics, "ratio_to_limit");
+  const double not_ok = run.metrics.getNumber(0, "not_ok");
   return "Estimates " + what + " with an error (sd) of " + describeErrors(run.metrics) +
          (std::isfinite(ratio) ? ", " + toShortText(ratio, 3) + " times the smallest that the noise permits"
                                : "") +
          "; " + toShortText(100.0 * calcMean(run.metrics, "coverage95"), 3) +
-         " % of the true values lie in the 95 % intervals.";
+         " % of the true values lie in the 95 % intervals" +
+         (not_ok > 0.0 ? "; of " + toShortText(100.0 * not_ok, 3) + " % infer says that they are not ok."
+                       : ".");
 }
 
 constexpr const char* kNotRecorded = "not recorded";

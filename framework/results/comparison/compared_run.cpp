@@ -11,8 +11,12 @@ ComparedRun readComparedRun(const std::filesystem::path& folder) {
   const std::string resolved = (folder / "resolved.yaml").string();
   ComparedRun run{folder.string(), loadYaml(resolved), loadExperiment(resolved).model.parameters, {}};
   run.test = readPredictionsFile(folder / "predictions.csv", collectNames(run.parameters));
+  std::vector<int> samples = run.test.samples;
+  for (const Eigen::Index repeated : run.test.predictions.repeated) {
+    samples.push_back(run.test.samples[static_cast<std::size_t>(repeated)]);
+  }
   run.test.predictions.mixtures =
-      readComponentsFile(folder / "components.csv", collectNames(run.parameters), run.test.samples);
+      readComponentsFile(folder / "components.csv", collectNames(run.parameters), samples);
   return run;
 }
 

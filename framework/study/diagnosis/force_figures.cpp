@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/report/html.hpp"
 
 namespace twinmap {
@@ -13,8 +14,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double kNormal95 = 1.959964;
 
 std::vector<double> toVector(const VectorXd& values) {
   return {values.begin(), values.end()};

@@ -43,8 +43,10 @@ MapComparison compare(const std::string& name, const Study& study, const Prepare
   Evaluation evaluation =
       evaluateEstimates(study.experiment.model.parameters, test.parameters,
                         selectEstimates(predictions, map.residual_correlation, {}), limit_stddev);
-  evaluation.methods = summarizeMethods(map.name, study.experiment.model.parameters, test.parameters,
-                                        predictions, {}, limit_stddev);
+  if (map.online.trust) {
+    map.online.trust->coverage = recordCoverage(
+        summarizeMap(map.name, study.experiment.model.parameters, test.parameters, predictions, {}));
+  }
   return {name,
           evaluation.metrics,
           evaluation.joint,

@@ -24,24 +24,23 @@ int calcMedianSimulations(const std::vector<Refined>& refined) {
   return *middle;
 }
 
-/// Intervals of the estimate are those of a refined one.
-void setFactors(const Refined& refined, Index sample, Estimates& estimates) {
-  IntervalFactors& factors = estimates.interval_factors;
-  if (refined.interval_factors.isGiven() && !factors.isGiven()) {
-    factors = {MatrixXd::Constant(estimates.mean.rows(), estimates.mean.cols(), kNormal50),
-               MatrixXd::Constant(estimates.mean.rows(), estimates.mean.cols(), kNormal95)};
-  }
-  for (Index p = 0; p < estimates.mean.rows() && factors.isGiven(); ++p) {
-    factors.set(p, sample, refined.interval_factors.get(p));
-  }
-}
-
 /// Of all samples, or of none.
 MatrixXd chooseColumns(const MatrixXd& values, const std::vector<Index>& columns) {
   return values.cols() > 0 ? MatrixXd(values(Eigen::all, columns)) : MatrixXd();
 }
 
 }  // namespace
+
+void setFactors(const IntervalFactors& of_one, Index sample, Estimates& estimates) {
+  IntervalFactors& factors = estimates.interval_factors;
+  if (of_one.isGiven() && !factors.isGiven()) {
+    factors = {MatrixXd::Constant(estimates.mean.rows(), estimates.mean.cols(), kNormal50),
+               MatrixXd::Constant(estimates.mean.rows(), estimates.mean.cols(), kNormal95)};
+  }
+  for (Index p = 0; p < estimates.mean.rows() && factors.isGiven(); ++p) {
+    factors.set(p, sample, of_one.get(p));
+  }
+}
 
 std::vector<Index> findAccepted(const std::vector<Refined>& refined) {
   std::vector<Index> accepted;
@@ -66,7 +65,7 @@ Estimates selectEstimates(Estimates by_estimator, const MatrixXd& residual_corre
     estimates.mean.col(i) = one.mean.head(p);
     estimates.stddev.col(i) = one.stddev.head(p);
     estimates.correlations[column] = calcCorrelation(one.covariance.topLeftCorner(p, p));
-    setFactors(one, i, estimates);
+    setFactors(one.interval_factors, i, estimates);
     if (one.ridge.isGiven()) {
       estimates.ridges.resize(refined.size());
       estimates.ridges[column] = takeFirst(one.ridge, p);
@@ -88,7 +87,7 @@ Evaluation evaluateEstimates(const std::vector<ParameterSpec>& parameters, const
   evaluation.joint = calcJointMetrics(truth, estimates);
   const MatrixXd pit = calcPit(truth, estimates);
   for (const auto& row : pit.rowwise()) {
-    evaluation.pit_counts.push_back(countPit(row.transpose()));
+    evaluation.pit_counts.push_back(countPit(row.transpose(), estimates.weights));
   }
   evaluation.predictions = std::move(estimates);
   return evaluation;
@@ -116,7 +115,7 @@ MethodSummary summarizeRefined(const std::vector<ParameterSpec>& parameters, con
     const Refined& one = refined[static_cast<std::size_t>(accepted[static_cast<std::size_t>(i)])];
     predictions.mean.col(i) = one.mean.head(truth.rows());
     predictions.stddev.col(i) = one.stddev.head(truth.rows());
-    setFactors(one, i, predictions);
+    setFactors(one.interval_factors, i, predictions);
   }
   summary.metrics = calcMetrics(parameters, chooseColumns(truth, accepted), predictions,
                                 chooseColumns(limit_stddev, accepted));

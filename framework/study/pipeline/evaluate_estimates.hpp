@@ -13,6 +13,9 @@ namespace twinmap {
 Estimates selectEstimates(Estimates by_estimator, const Eigen::MatrixXd& residual_correlation,
                           const std::vector<Refined>& refined);
 
+/// Intervals of a sample's estimate are of these factors (p x 1), or normal ones where none are given.
+void setFactors(const IntervalFactors& of_one, Eigen::Index sample, Estimates& estimates);
+
 /// What follows from the estimates of the test samples alone: metrics, joint metrics and PIT counts.
 /// `limit_stddev`: p x n, or empty.
 Evaluation evaluateEstimates(const std::vector<ParameterSpec>& parameters, const Eigen::MatrixXd& truth,

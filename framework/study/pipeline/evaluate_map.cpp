@@ -17,7 +17,7 @@
 #include "framework/study/pipeline/calibrate_posteriors.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/exact_posteriors.hpp"
-#include "framework/study/pipeline/refine_test_samples.hpp"
+#include "framework/study/pipeline/select_answers.hpp"
 
 namespace twinmap {
 namespace {
@@ -208,30 +208,33 @@ void requireReliable(const std::vector<SimulatorPosterior>& exact, std::size_t r
 
 }  // namespace
 
-MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const TrainedMap& map) {
+MapEvaluation evaluateMap(const Study& study, const PreparedData& data, TrainedMap& map) {
   const LabelledFeatures& test = data.labelled.test;
   const std::vector<ParameterSpec>& parameters = getParameters(study);
   MapEvaluation result;
-  const Estimates predictions = timeStage("infer the test samples", result.notes,
-                                          [&] { return map.predict(test.features, test.inputs); });
   const std::optional<InformationLimit> limit = findLimit(study, data, result.notes);
   const Eigen::MatrixXd limit_stddev = limit ? limit->stddev : Eigen::MatrixXd();
-  RefinedTests tests = refineTestSamples(study, data, map.online);
-  const std::vector<Refined> refined = std::move(tests.refined);
+  const InferredTests tests = inferTestSamples(study, data, map);
   result.notes.append(tests.notes);
-  const Estimates estimates = selectEstimates(predictions, map.residual_correlation, refined);
-  result.evaluation = evaluateEstimates(parameters, test.parameters, estimates, limit_stddev);
+  const Estimates& predictions = tests.by_estimator;
+  const Estimates answers = selectAnswers(tests, map.residual_correlation, test.parameters);
+  result.evaluation = evaluateEstimates(parameters, test.parameters, answers, limit_stddev);
   result.evaluation.prior_stddev = calcPriorStddev(study);
-  result.evaluation.derived = evaluateDerivedOf(study, test, estimates, limit);
-  result.evaluation.curves = estimateCurves(study.experiment, test.parameters, estimates);
+  result.evaluation.derived = evaluateDerivedOf(study, test, answers, limit);
+  result.evaluation.curves = estimateCurves(study.experiment, test.parameters, answers);
   result.evaluation.methods =
-      summarizeMethods(map.name, parameters, test.parameters, predictions, refined, limit_stddev);
-  result.evaluation.refined = refined;
+      summarizeMethods(map.name, parameters, test.parameters, predictions, tests.refined, limit_stddev);
+  result.evaluation.refined = tests.refined;
+  result.evaluation.answers = summarizeAnswers(tests);
   if (limit) {
     addLimit(study, test, *limit, result);
   }
   if (study.experiment.evaluation.posterior) {
     addPosteriors(study, data, predictions, limit_stddev, result);
+  }
+  if (!tests.listSampled().empty()) {
+    result.evaluation.methods.push_back(
+        summarizeSampled(parameters, test.parameters, tests, answers, limit_stddev));
   }
   if (study.experiment.evaluation.calibration == PosteriorCalibrationMethod::kSimulationBased) {
     CalibratedPosteriors calibrated = calibratePosteriors(study, data, map);

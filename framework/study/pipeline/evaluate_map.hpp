@@ -11,10 +11,10 @@ struct MapEvaluation {
   StageNotes notes;
 };
 
-/// Infers the test samples as `twinmap infer` does, refined where the experiment asks for it, and finds out
-/// how good that is: errors and calibration, and, where the experiment asks for them, information limit,
-/// exact posteriors, calibration of posteriors and baselines.
-MapEvaluation evaluateMap(const Study& study, const PreparedData& data, const TrainedMap& map);
+/// Infers the test samples as `twinmap infer` does, refined where the experiment asks for it, or sampled
+/// where that does (inferTestSamples), and finds out how good that is: errors and calibration, and, where the
+/// experiment asks for them, information limit, exact posteriors, calibration of posteriors and baselines.
+MapEvaluation evaluateMap(const Study& study, const PreparedData& data, TrainedMap& map);
 
 /// An evaluation without a map.
 struct PosteriorEvaluation {

@@ -16,16 +16,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The half width, in standard deviations, of the interval about the mean that holds a share of the weight.
-double calcFactor(const SimulatorPosterior& posterior, Index parameter, double probability) {
-  const VectorXd depths = (posterior.draws.row(parameter).array() - posterior.mean[parameter]).abs() /
-                          posterior.stddev[parameter];
+/// The smallest of the depths below which lies a share of the weight.
+double calcDepthOf(const VectorXd& depths, const VectorXd& weights, double probability) {
   std::vector<Index> order(static_cast<std::size_t>(depths.size()));
   std::iota(order.begin(), order.end(), Index{0});
   std::sort(order.begin(), order.end(), [&](Index a, Index b) { return depths[a] < depths[b]; });
   double held = 0.0;
   for (const Index i : order) {
-    held += posterior.weights[i];
+    held += weights[i];
     if (held >= probability) {
       return depths[i];
     }
@@ -71,6 +69,11 @@ bool isApart(const Refined& refined, const SimulatorPosterior& posterior, Index 
 }
 
 }  // namespace
+
+IntervalFactor calcDrawnFactor(const VectorXd& values, const VectorXd& weights, double mean, double stddev) {
+  const VectorXd depths = (values.array() - mean).abs() / stddev;
+  return {calcDepthOf(depths, weights, 0.5), calcDepthOf(depths, weights, 0.95)};
+}
 
 std::vector<SimulatorPosterior> sampleTestPosteriors(const Study& study, const LabelledFeatures& test,
                                                      Index count, int draws, VectorXd* seconds) {
@@ -123,7 +126,8 @@ ReliablePosteriors takeReliable(const std::vector<SimulatorPosterior>& posterior
     estimates.stddev.col(i) = one.stddev.head(parameters);
     estimates.correlations.push_back(calcCorrelation(one.covariance.topLeftCorner(parameters, parameters)));
     for (Index p = 0; p < parameters; ++p) {
-      estimates.interval_factors.set(p, i, {calcFactor(one, p, 0.5), calcFactor(one, p, 0.95)});
+      estimates.interval_factors.set(
+          p, i, calcDrawnFactor(one.draws.row(p), one.weights, one.mean[p], one.stddev[p]));
     }
   }
   return reliable;

@@ -15,6 +15,11 @@ std::vector<SimulatorPosterior> sampleTestPosteriors(const Study& study, const L
                                                      Eigen::Index count, int draws,
                                                      Eigen::VectorXd* seconds = nullptr);
 
+/// Half widths, in standard deviations, of the intervals about the mean that hold half, and 95 %, of the
+/// weight of draws.
+IntervalFactor calcDrawnFactor(const Eigen::VectorXd& values, const Eigen::VectorXd& weights, double mean,
+                               double stddev);
+
 /// The posteriors that are reliable (p x n) as estimates whose intervals hold the draws that they say: mean
 /// +- what holds half, and 95 %, of their weight. `samples`: their indices.
 struct ReliablePosteriors {

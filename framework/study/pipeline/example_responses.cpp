@@ -13,7 +13,8 @@ namespace {
 
 /// Columns of the predictions in the order of their error.
 std::vector<Eigen::Index> sortByError(const Evaluation& evaluation) {
-  const Eigen::ArrayXXd error = (evaluation.predictions.mean - evaluation.truth).array();
+  const Eigen::ArrayXXd error =
+      (evaluation.predictions.mean.leftCols(evaluation.truth.cols()) - evaluation.truth).array();
   const Eigen::ArrayXd mean_square = error.square().rowwise().mean();
   const Eigen::ArrayXd normalised = (error.square().colwise() / mean_square).colwise().sum().transpose();
   std::vector<Eigen::Index> order(static_cast<std::size_t>(normalised.size()));

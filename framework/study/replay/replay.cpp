@@ -74,7 +74,7 @@ void requireOk(const SampleStatus& status, const std::string& what) {
 }
 
 InferredMeasurement infer(const Inferrer& inferrer, const Window& window, const ReplayOptions& options) {
-  Inferrer::Workspace workspace(inferrer);
+  OnlineWorkspace workspace(inferrer.getModel());
   InferredMeasurement inferred = inferrer.infer(window.features, options.known, workspace);
   inferred.source = options.from.file.string();
   inferred.start = options.from.start;
@@ -82,7 +82,8 @@ InferredMeasurement infer(const Inferrer& inferrer, const Window& window, const 
     const std::optional<TrustModel>& trust = inferrer.getTrustModel();
     const TrustModel* judged_by = trust ? &*trust : nullptr;
     window.refiner.refineAndJudge(window.features, options.known, judged_by, inferred);
-    if (window.refiner.samplesFast() && needsPosterior(inferrer, inferred)) {
+    if (window.refiner.samplesFast() && needsPosterior(inferred, inferrer.getExperiment().model.parameters,
+                                                       window.refiner.getExtractor().getInfos())) {
       const int draws = SimulatorPosteriorOptions{}.draws;
       window.refiner.sampleAndJudge(window.features, options.known, judged_by,
                                     makePosteriorOptions(inferrer.getExperiment(), draws), inferred);

@@ -37,13 +37,13 @@ bool needsStencils(const ModelGroup& group) {
 }
 
 /// What is asked for at the points of `all` and `todo`, one value a case.
-struct Asked {
+struct AskedPoints {
   const std::vector<SweepCase>& cases;
   const std::vector<bool>& all;
   const std::vector<bool>& todo;
 };
 
-void addStencils(const Asked& asked, const ModelGroup& group, const TrajectoryStore& samples,
+void addStencils(const AskedPoints& asked, const ModelGroup& group, const TrajectoryStore& samples,
                  const std::filesystem::path& store, PointCounts& counts) {
   if (collectDerivativePoints(asked.cases, group, asked.all).cols() == 0 || !needsStencils(group)) {
     return;
@@ -58,7 +58,7 @@ void addStencils(const Asked& asked, const ModelGroup& group, const TrajectorySt
 }
 
 /// Where all cases are to be done, as in a new experiment, the points are collected once.
-void addSamples(const Asked& asked, const ModelGroup& group, const TrajectoryStore& samples,
+void addSamples(const AskedPoints& asked, const ModelGroup& group, const TrajectoryStore& samples,
                 StoredCounts& counts) {
   const MatrixXd points = collectPoints(asked.cases, group, asked.all);
   const Sought all{points, samples.findMissing(points)};

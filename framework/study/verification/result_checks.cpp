@@ -19,7 +19,7 @@
 #include "framework/store/trained_file.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/preparation/prepare_data.hpp"
-#include "framework/study/pipeline/refine_test_samples.hpp"
+#include "framework/study/pipeline/select_answers.hpp"
 #include "framework/study/pipeline/training/store_map.hpp"
 #include "framework/study/pipeline/training/train_maps.hpp"
 #include "framework/study/verification/file_difference.hpp"
@@ -91,19 +91,19 @@ TrainedMap trainAgain(const Study& study, const PreparedData& data, const Traine
 }
 
 RunSummary summarize(const Study& study, const PreparedData& data, const TrainedMap& map,
-                     const std::vector<Refined>& refined, const Limits& limits) {
+                     const InferredTests& tests, const Limits& limits) {
   const LabelledFeatures& test = data.labelled.test;
   RunSummary run;
   run.parameters = study.experiment.model.parameters;
   run.test_indices = data.test_indices;
-  const Estimates estimates =
-      selectEstimates(map.predict(test.features, test.inputs), map.residual_correlation, refined);
+  const Estimates estimates = selectAnswers(tests, map.residual_correlation, test.parameters);
   run.evaluation = evaluateEstimates(run.parameters, test.parameters, estimates, limits.parameters);
   const DerivedQuantities quantities(study.experiment);
   if (quantities.count() > 0) {
     run.evaluation.derived = evaluateDerived(quantities, test.parameters, estimates, limits.derived);
   }
-  run.evaluation.refined = refined;
+  run.evaluation.refined = tests.refined;
+  run.evaluation.answers = summarizeAnswers(tests);
   run.training = map.summary;
   return run;
 }
@@ -128,7 +128,7 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
                        Verification& verification) {
   const std::filesystem::path& folder = verification.folder;
   std::optional<TrainedMap> map;
-  std::vector<Refined> refined;
+  InferredTests tests;
   verification.check("maps.h5: fitted again", [&] {
     const TrainedFile stored = readTrainedFile(folder / "maps.h5", Hdf5Seal::kNone);  // differences: below
     map = trainAgain(study, data, stored);
@@ -136,14 +136,9 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
       map->online.trust->posteriors =
           stored.model.trust->posteriors;  // the calibration's, which is not fitted
     }
-    refined = refineTestSamples(study, data, map->online).refined;
-    const LabelledFeatures& test = data.labelled.test;
-    Evaluation evaluation;
-    evaluation.refined = refined;
-    evaluation.methods = summarizeMethods(map->name, study.experiment.model.parameters, test.parameters,
-                                          map->predict(test.features, test.inputs), refined, {});
+    tests = inferTestSamples(study, data, *map);
     const TemporaryFolder temporary;
-    storeMap(temporary.getPath() / "maps.h5", study, evaluation, *map);
+    storeMap(temporary.getPath() / "maps.h5", study, {}, *map);
     std::string difference = findHdf5Difference(folder / "maps.h5", temporary.getPath() / "maps.h5");
     if (difference.empty()) {
       readSealedFile(folder / "maps.h5");  // or throws
@@ -156,7 +151,7 @@ void checkMapAndTables(const Study& study, const PreparedData& data, const std::
   }
   RunSummary run;
   verification.check("predictions.csv: all test samples inferred again", [&] {
-    run = summarize(study, data, *map, refined, calcLimits(study, data, limits, folder));
+    run = summarize(study, data, *map, tests, calcLimits(study, data, limits, folder));
     return findDifference(folder / "predictions.csv", makePredictionsCsv(run));
   });
   if (run.evaluation.derived) {

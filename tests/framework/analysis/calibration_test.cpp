@@ -66,6 +66,7 @@ TEST(Pit, IsTheProbabilityBelowTheTruth) {
   EXPECT_EQ(pit(3), 1.0);
   EXPECT_EQ(countPit(pit.row(0).transpose()), (std::vector<int>{0, 0, 0, 1, 0, 1, 0, 0, 1, 1}));
   EXPECT_EQ(countPit(ArrayXd::Zero(3))[0], 3);
+  EXPECT_EQ(countPit(ArrayXd::Zero(3), Eigen::Vector3d(0, 2.5, 2))[0], 5);  // 4.5
   EXPECT_EQ(countPit(ArrayXd::Constant(2, std::nan(""))), std::vector<int>(kPitBins, 0));
 }
 

@@ -48,6 +48,81 @@ TEST(Metrics, CoverageIsThatOfTheIntervalsThatAreClaimed) {
   EXPECT_NEAR(metrics.z_sd, std::sqrt((4.0 + 9.0 + 1.0) / 2), 1e-12);
 }
 
+/// Six samples with two kinds of estimates: three need the exact one, which of `sampled` is known. Refined
+/// estimates stand for themselves where `near`, else the sampled ones stand for all three.
+Estimates makeTwoKinds(const std::vector<Eigen::Index>& sampled, bool near) {
+  const Eigen::RowVectorXd refined = (Eigen::RowVectorXd(6) << 1.1, 1.8, 4.0, 1.5, 2.3, 3.0).finished();
+  const Eigen::RowVectorXd exact = (Eigen::RowVectorXd(6) << 0, 0, 0, 1.3, 2.5, 3.1).finished();
+  Estimates estimates{refined, Eigen::RowVectorXd::Constant(6, 0.3)};
+  const double weight = 3.0 / static_cast<double>(sampled.size());
+  estimates.weights = Eigen::VectorXd::Ones(6);
+  estimates.weights.tail(3).setConstant(near ? 1.0 : 0.0);
+  for (const Eigen::Index i : sampled) {
+    estimates.mean(0, i) = exact[i];
+    estimates.weights[i] = weight;
+  }
+  if (near) {
+    estimates.repeated = sampled;
+    estimates.mean.conservativeResize(1, 6 + static_cast<Eigen::Index>(sampled.size()));
+    estimates.mean.rightCols(static_cast<Eigen::Index>(sampled.size())) = refined(sampled);
+    estimates.stddev.setConstant(1, estimates.mean.cols(), 0.3);
+    estimates.weights.conservativeResize(estimates.mean.cols());
+    estimates.weights.tail(static_cast<Eigen::Index>(sampled.size())).setConstant(1.0 - weight);
+  }
+  return estimates;
+}
+
+const Eigen::RowVectorXd kSixTruths = (Eigen::RowVectorXd(6) << 1, 2, 4, 1.4, 2.1, 3.3).finished();
+
+// The mean over all choices of two of the three is the figure with all three, whatever the kinds have to do
+// with one another.
+TEST(Metrics, OfFewSampledOnesAreRightOnAverage) {
+  const std::vector<ParameterSpec> parameters{makeParameter(1, 4)};
+  const ParameterMetrics all = calcMetrics(parameters, kSixTruths, makeTwoKinds({3, 4, 5}, false)).at(0);
+  for (const bool near : {false, true}) {
+    double bias = 0.0, mare = 0.0, coverage = 0.0, nlpd = 0.0;
+    for (const std::vector<Eigen::Index>& pair :
+         {std::vector<Eigen::Index>{3, 4}, std::vector<Eigen::Index>{3, 5},
+          std::vector<Eigen::Index>{4, 5}}) {
+      const ParameterMetrics some = calcMetrics(parameters, kSixTruths, makeTwoKinds(pair, near)).at(0);
+      bias += some.bias_pct / 3;
+      mare += some.mare_pct / 3;
+      coverage += some.coverage95 / 3;
+      nlpd += some.nlpd / 3;
+      EXPECT_EQ(some.samples, near ? 6 : 5);
+      EXPECT_GT(some.se.bias_pct, 0.0);
+    }
+    EXPECT_NEAR(bias, all.bias_pct, 1e-12);
+    EXPECT_NEAR(mare, all.mare_pct, 1e-12);
+    EXPECT_NEAR(coverage, all.coverage95, 1e-12);
+    EXPECT_NEAR(nlpd, all.nlpd, 1e-12);
+  }
+}
+
+// One for each is as if nothing were said of weights.
+TEST(Metrics, WeightsOfOneChangeNothing) {
+  Estimates weighted = makeTwoKinds({3, 4, 5}, false), plain = weighted;
+  plain.weights.resize(0);
+  const ParameterMetrics a = calcMetrics({makeParameter(1, 4)}, kSixTruths, weighted).at(0);
+  const ParameterMetrics b = calcMetrics({makeParameter(1, 4)}, kSixTruths, plain).at(0);
+  for (const FigureColumn& column : kFigureColumns) {
+    if (!column.needs_limit) {
+      EXPECT_NEAR(a.*column.value, b.*column.value, 1e-12) << column.name;
+      EXPECT_NEAR(a.se.*column.value, b.se.*column.value, 1e-12) << column.name;
+    }
+  }
+}
+
+// Of a stratum of which two of three are known the mean has the variance of a weighted one.
+TEST(Metrics, StandardErrorsAreThoseOfTheSampledOnes) {
+  const Estimates some = makeTwoKinds({3, 5}, false);
+  const ParameterMetrics metrics = calcMetrics({makeParameter(1, 4)}, kSixTruths, some).at(0);
+  const Eigen::ArrayXd error = (some.mean - kSixTruths).cwiseQuotient(kSixTruths).transpose();
+  const double mean = (some.weights.array() * error).sum() / 6;
+  const double squares = (some.weights.array() * (error - mean)).square().sum();
+  EXPECT_NEAR(metrics.se.bias_pct, 100 * std::sqrt(squares / (6 * 5)), 1e-12);
+}
+
 TEST(Metrics, RelativeToTheRangeWhereTheParameterSaysSo) {
   Eigen::MatrixXd truth(1, 2);
   truth << 0, 1;

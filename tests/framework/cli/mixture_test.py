@@ -4,11 +4,12 @@ import json
 import shutil
 import unittest
 
-from support import EXPERIMENTS, OwnFolderTestCase, call, read_csv, run_once
+from support import EXPERIMENTS, OwnFolderTestCase, call, read_csv, run_once, write_csv
 
 ROTOR = EXPERIMENTS / "mechanisms/unbalanced_rotor.yaml"
 SMALL = ["design.train.samples=1000", "design.test.samples=400", "evaluation.limit=false"]
 QUICK = "inverse_map={network: {head: mixture, samples_from: simulations, steps: 2500, hidden: [32, 32]}}"
+MIRRORED = ["design.train.samples=200", "design.test.samples=100"]
 SHORT = QUICK.replace("2500", "60")
 OFFSET = 0.06
 
@@ -75,10 +76,38 @@ class Mixture(OwnFolderTestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         statuses = [row["status"] for row in read_csv(refined / "refined.csv")]
         self.assertGreater(statuses.count("multimodal"), 40)
-        # a sample whose refined answer was accepted has that one alone
-        accepted = statuses.count("accepted")
+        answers = read_csv(refined / "refined.csv")
+        self.assertEqual({row["answer"] for row in answers if row["status"] == "multimodal"}, {"posterior"})
         rows = [row for row in read_csv(refined / "components.csv") if row["parameter"] == "k"]
-        self.assertEqual(len(rows), 3 * (60 - accepted) + accepted)
+        several = sum(row["statuses"] == "multimodal" for row in answers)
+        self.assertEqual(len(rows), 2 * several + 60 - several)
+        self.assertGreater(several, 40)
+
+    def test_the_table_judges_what_infer_gives(self):
+        run, result = run_once(ROTOR, "inverse_map=surrogate", "refine=automatic", *MIRRORED)
+        for row in read_csv(run / "metrics.csv"):
+            self.assertGreater(float(row["coverage95"]), 0.85, row)  # 100 samples: one of 10000 is below by chance
+            self.assertLess(float(row["ratio_to_limit"]), 1.3, row)
+        answers = {row["sample"]: row for row in read_csv(run / "refined.csv")}
+        not_ok = sum(row["statuses"] != "ok" for row in answers.values()) / len(answers)
+        self.assertGreater(not_ok, 0.5)
+        self.assertAlmostEqual(float(read_csv(run / "metrics.csv")[0]["not_ok"]), not_ok, 12)
+        self.assertIn(f"Not ok by infer: {100 * not_ok:.3g} % of the test samples (multimodal", result.stdout)
+        components = [row for row in read_csv(run / "components.csv") if row["parameter"] == "offset"]
+        responses = read_csv(run / "responses.csv")
+        for case in ("best", "median", "worst"):
+            rows = [row for row in responses if row["case"] == case]
+            columns = [[float(row[name]) for row in rows] for name in ("time", "measured")]
+            write_csv(self.folder / "case.csv", ["t", "angle"], columns)
+            answer = json.loads(call("infer", run, self.folder / "case.csv", "--json").stdout)
+            sample = rows[0]["sample"]
+            self.assertEqual(answers[sample]["answer"], answer["method"], case)
+            self.assertEqual(answers[sample]["statuses"], "; ".join(answer["statuses"]), case)
+            of_table = sorted(float(row["mean"]) for row in components if row["sample"] == sample)
+            of_infer = sorted(one["parameters"]["offset"]["mean"] for one in answer.get("components", []))
+            for mean, inferred in zip(of_table, of_infer):
+                self.assertAlmostEqual(mean, inferred, 9)
+        self.assertEqual(call("verify", run).returncode, 0)
 
     def test_a_replay_draws_from_both(self):
         run, _ = run_once(ROTOR, *SMALL, QUICK)

@@ -6,9 +6,12 @@
 #include <cmath>
 #include <sstream>
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_with_error.hpp"
 #include "framework/experiment/gate_spec.hpp"
+#include "framework/store/predictions_file.hpp"
+#include "tests/framework/test_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -48,6 +51,48 @@ TEST(Tables, GatesMayHoldEveryMetricAndNoOther) {
     const bool is_error = column.size() > 3 && column.substr(column.size() - 3) == "_se";
     EXPECT_TRUE(is_error || std::count(metrics.begin(), metrics.end(), column) == 1) << column;
   }
+}
+
+TEST(Tables, SayWhatInferSays) {
+  RunSummary run = makeRun();
+  EXPECT_EQ(makeMarkdownTable(run).find("infer"), std::string::npos);
+  run.evaluation.refined.resize(2);
+  run.evaluation.answers = AnswerSummary{
+      {{"posterior", {"multimodal", "outliers"}}, {"refined", {"ok"}}, {"refined", {"at_bounds"}}},
+      Eigen::Vector3d(2, 1, 0),
+      2,
+      1};
+  const std::string text = makeMarkdownTable(run);
+  EXPECT_NE(text.find("as by infer: 2 estimates; 1 of these were sampled and stand for all.\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("Not ok by infer: 66.7 % of the test samples (multimodal 66.7 %, outliers 66.7 %).\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("errors are to the nearest"), std::string::npos);
+  const std::string csv = makeMetricsCsv(run);
+  EXPECT_EQ(csv.substr(csv.find('\n') - 7, 7), ",not_ok");
+  EXPECT_NE(csv.find(",0.6666666666666666\n"), std::string::npos) << csv;
+}
+
+// What the file says of estimates that stand for others is what the tables were made of.
+TEST(Tables, PredictionsAreReadWithWhatTheyStandFor) {
+  RunSummary run = makeRun();
+  Estimates& predictions = run.evaluation.predictions;
+  predictions.mean.conservativeResize(2, 3);
+  predictions.stddev.conservativeResize(2, 3);
+  predictions.mean.col(2) << 5.5, 1.9e-4;
+  predictions.stddev.col(2) << 0.3, 2e-6;
+  predictions.weights = Eigen::Vector3d(2, 1, -1);
+  predictions.repeated = {0};
+  const TestFolder folder;
+  writeTextFile(folder / "predictions.csv", makePredictionsCsv(run));
+  const StoredPredictions stored = readPredictionsFile(folder / "predictions.csv", {"k_y", "d"});
+  EXPECT_EQ(stored.samples, run.test_indices);
+  EXPECT_EQ(stored.truth, run.evaluation.truth);
+  EXPECT_EQ(stored.predictions.mean, predictions.mean);
+  EXPECT_EQ(stored.predictions.weights, predictions.weights);
+  EXPECT_EQ(stored.predictions.repeated, predictions.repeated);
 }
 
 TEST(Tables, MetricsCsvBeginsWithThePapersColumns) {

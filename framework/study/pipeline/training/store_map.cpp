@@ -28,6 +28,8 @@ ExperimentSpec takeWhole(const Study& study) {
   return experiment;
 }
 
+}  // namespace
+
 CoverageRecord recordCoverage(const MethodSummary& method) {
   CoverageRecord record{method.accepted, Eigen::VectorXd(static_cast<Eigen::Index>(method.metrics.size()))};
   for (std::size_t p = 0; p < method.metrics.size(); ++p) {
@@ -35,8 +37,6 @@ CoverageRecord recordCoverage(const MethodSummary& method) {
   }
   return record;
 }
-
-}  // namespace
 
 RefinementReference collectReference(const std::vector<Refined>& refined) {
   RefinementReference reference;
@@ -57,14 +57,9 @@ RefinementReference collectReference(const std::vector<Refined>& refined) {
 void storeMap(const std::filesystem::path& file, const Study& study, const Evaluation& evaluation,
               TrainedMap& map) {
   if (map.online.trust) {
-    TrustModel& trust = *map.online.trust;
-    trust.refinement = collectReference(evaluation.refined);
-    for (const MethodSummary& method : evaluation.methods) {
-      (method.method == toString(EstimationMethod::kRefined) ? trust.refined_coverage : trust.coverage) =
-          recordCoverage(method);
-    }
     if (evaluation.calibration) {
-      trust.posteriors = {evaluation.calibration->measurements, evaluation.calibration->ranks.p_value};
+      map.online.trust->posteriors = {evaluation.calibration->measurements,
+                                      evaluation.calibration->ranks.p_value};
     }
   }
   const ExperimentSpec experiment = nameEngine(takeWhole(study), study.simulator);
