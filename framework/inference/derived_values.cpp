@@ -59,7 +59,7 @@ std::shared_ptr<const DerivedQuantities> makeDerivedQuantities(const ExperimentS
   return experiment.derived.empty() ? nullptr : std::make_shared<const DerivedQuantities>(experiment);
 }
 
-std::vector<NuisanceEstimate> listNuisance(const std::optional<PosteriorEstimate>& posterior) {
+std::vector<DerivedValue> listNuisance(const std::optional<PosteriorEstimate>& posterior) {
   if (!posterior || !posterior->fit || !posterior->isReliable()) {
     return {};
   }
@@ -68,7 +68,7 @@ std::vector<NuisanceEstimate> listNuisance(const std::optional<PosteriorEstimate
   if (draws.points.rows() < p + static_cast<Index>(posterior->nuisance.size())) {
     return {};  // of many unknown parameters the shared ones alone are drawn
   }
-  std::vector<NuisanceEstimate> estimates;
+  std::vector<DerivedValue> estimates;
   for (std::size_t n = 0; n < posterior->nuisance.size(); ++n) {
     const Index i = p + static_cast<Index>(n);
     estimates.push_back(describeDrawn(posterior->nuisance[n].name.text, posterior->nuisance[n].unit,

@@ -32,10 +32,8 @@ std::vector<DerivedValue> deriveFrom(const DerivedQuantities* quantities, const 
 /// Those of an experiment; null where it derives none.
 std::shared_ptr<const DerivedQuantities> makeDerivedQuantities(const ExperimentSpec& experiment);
 
-using NuisanceEstimate = DerivedValue;
-
 /// Of all nuisance parameters, from the draws of the simulator's posterior where that is reliable and has
 /// them; else empty.
-std::vector<NuisanceEstimate> listNuisance(const std::optional<PosteriorEstimate>& posterior);
+std::vector<DerivedValue> listNuisance(const std::optional<PosteriorEstimate>& posterior);
 
 }  // namespace twinmap

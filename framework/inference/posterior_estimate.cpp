@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/estimation/derived/value_distribution.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
 
@@ -61,16 +61,17 @@ Estimate makeEstimate(BoundedDraws draws, const VectorXd& mean, const MatrixXd& 
 
 /// Of the first p parameters.
 Estimate makeDetermined(const FloorDraws& floor, const std::vector<ParameterSpec>& unknown, Index p) {
-  if (!floor.isGiven()) {
-    return {};
+  Estimate estimate;
+  if (floor.isGiven()) {
+    estimate.mean = estimate.stddev = VectorXd::Constant(p, std::numeric_limits<double>::quiet_NaN());
+    estimate.method = EstimationMethod::kPosterior;
+    estimate.draws = makeDraws(floor.points, floor.weights, unknown);
   }
-  const importance::WeightedDraws draws{floor.points.topRows(p), floor.weights};
-  Estimate estimate = makeEstimate(makeDraws(floor.points, floor.weights, unknown),
-                                   importance::calcMean(draws), importance::calcCovariance(draws));
-  estimate.correlation.resize(0, 0);
-  for (Index i = 0; i < p; ++i) {
-    if (!floor.determine(floor.points.row(i))) {
-      estimate.mean[i] = estimate.stddev[i] = std::numeric_limits<double>::quiet_NaN();
+  for (Index i = 0; i < estimate.mean.size(); ++i) {
+    if (const VectorXd values = floor.points.row(i); floor.determine(values)) {
+      const ValueDistribution known(values, floor.weights);
+      estimate.mean[i] = known.getMean();
+      estimate.stddev[i] = known.getStddev();
     }
   }
   return estimate;

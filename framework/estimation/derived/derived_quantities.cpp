@@ -196,16 +196,6 @@ std::vector<ValueDistribution> DerivedQuantities::propagate(const Estimate& esti
   return propagate(estimate.mean, estimate.calcCovariance());
 }
 
-std::vector<ValueDistribution> DerivedQuantities::propagateDraws(const MatrixXd& draws,
-                                                                 const VectorXd& weights) const {
-  const MatrixXd values = calcAll(draws);
-  std::vector<ValueDistribution> distributions;
-  for (Index k = 0; k < count(); ++k) {
-    distributions.emplace_back(values.row(k).transpose(), weights);
-  }
-  return distributions;
-}
-
 DerivedEstimate summarize(const std::vector<ValueDistribution>& distributions, double factor) {
   const auto q = static_cast<Index>(distributions.size());
   const double tail = 0.5 * boost::math::erfc(factor / std::sqrt(2.0));

@@ -56,10 +56,6 @@ class DerivedQuantities {
   /// The same of an estimate: of its mixture or ridge where it is one, else of its normal distribution.
   std::vector<ValueDistribution> propagate(const Estimate& estimate) const;
 
-  /// The values at draws of the parameters (p x n) with their weights (n).
-  std::vector<ValueDistribution> propagateDraws(const Eigen::MatrixXd& draws,
-                                                const Eigen::VectorXd& weights) const;
-
  private:
   struct Nodes {
     Eigen::MatrixXd values;   ///< q x k

@@ -11,8 +11,8 @@
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/inference/derived_values.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/stated_values.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/report/estimate_panel.hpp"
 #include "framework/report/figure.hpp"
@@ -125,9 +125,43 @@ std::string makeParameterTable(const MeasurementReader& reader, const Replay& re
                        headings, rows);
 }
 
+/// What follows from the parameters, and those that are determined where the others are not.
+std::string makeValueTable(const std::vector<ParameterSpec>& parameters,
+                           const InferredMeasurement& inferred) {
+  constexpr int kStddevDigits = 3;
+  const Estimate believed = selectEstimate(inferred);
+  const StatedValues stated = stateValues(inferred, believed, parameters);
+  std::vector<Cells> rows;
+  const auto add = [&](const std::string& name, const std::string& unit, double mean, double stddev,
+                       double lower, double upper) {
+    rows.push_back({makeTextCell(name), makeTextCell(unit), makeShownCell(mean),
+                    makeShownCell(stddev, kStddevDigits), makeShownCell(lower), makeShownCell(upper)});
+  };
+  for (std::size_t p = 0; p < parameters.size() && !believed.isGiven(); ++p) {
+    if (const auto i = static_cast<Index>(p); isStated(stated.estimate, i)) {
+      const auto [lower, upper] = stated.estimate.findIntervals(i, Coverage::k95).front();
+      add(parameters[p].name.text, parameters[p].unit, stated.estimate.mean[i], stated.estimate.stddev[i],
+          lower, upper);
+    }
+  }
+  for (const std::vector<DerivedValue>* values : {&stated.derived, &stated.identified}) {
+    for (const DerivedValue& value : *values) {
+      if (value.isStated()) {
+        add(value.name, value.unit, value.mean, value.stddev, value.lower95, value.upper95);
+      }
+    }
+  }
+  return rows.empty()
+             ? ""
+             : makeHtmlTable("values-table",
+                             "What is determined besides: derived quantities, combinations of parameters "
+                             "and, where no estimate of all can be given, single parameters.",
+                             {"quantity", "unit", "estimated", "sd", "95 % from", "to"}, rows);
+}
+
 std::string makeNuisanceTable(const ModelSpec& model, const Replay& replay) {
   constexpr int kStddevDigits = 3;
-  const std::vector<NuisanceEstimate> known = listNuisance(replay.inferred.posterior);
+  const std::vector<DerivedValue> known = listNuisance(replay.inferred.posterior);
   std::vector<Cells> rows;
   for (std::size_t n = 0; n < model.nuisance.size(); ++n) {
     const auto i = static_cast<Index>(model.parameters.size() + n);
@@ -260,7 +294,8 @@ Section makeParameters(const MeasurementReader& reader, const Replay& replay, co
                                  shown, page),
               section);
   }
-  section.html += makeParameterTable(reader, replay) + makeNuisanceTable(model, replay);
+  section.html += makeParameterTable(reader, replay) + makeValueTable(model.parameters, replay.inferred) +
+                  makeNuisanceTable(model, replay);
   return section;
 }
 

@@ -373,6 +373,13 @@ class Direct(FolderTestCase):
         data = re.search(r'id="page-data">(.*?)</script>', page.read_text(), re.DOTALL).group(1)
         return json.loads(data)["tables"]
 
+    def test_page_has_derived_quantities(self):
+        derived, page = self.folder / "derived_page.yaml", self.folder / "derived_page.html"
+        derived.write_text(CART.read_text() + "derived: {k_per_d: {value: k / d, unit: 1/s}}\n")
+        found = json.loads(self.infer(derived, self.measured, "--page", page, "--json"))["derived"]["k_per_d"]
+        rows = page.read_text().split('aria-label="What is determined besides')[1].split("</table>")[0]
+        self.assertRegex(rows, rf"k_per_d</td>.*{found['mean']}.*{found['sd']}")
+
     def test_page_of_one_recording_draws_measured_over_fitted(self):
         lines = self.measured.read_text().splitlines()
         holed = self.folder / "holed.csv"

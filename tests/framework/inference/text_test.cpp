@@ -106,6 +106,7 @@ InferredMeasurement makeValley(const std::vector<ParameterSpec>& parameters) {
   constexpr Eigen::Index kPlaces = 3, kEach = 2;
   posterior.floor.points.resize(3, kPlaces * kEach);
   posterior.floor.weights = Eigen::VectorXd::Constant(kPlaces * kEach, 1.0 / (kPlaces * kEach));
+  posterior.floor.scales = Eigen::VectorXd::Zero(kPlaces * kEach);
   for (Eigen::Index i = 0; i < kPlaces * kEach; ++i) {
     const double m = 1.0 + static_cast<double>(i / kEach), side = i % kEach == 0 ? 1.0 : -1.0;
     posterior.floor.points.col(i) << m, (2.0 + 0.1 * side) / m, 0.4 + 0.02 * side;

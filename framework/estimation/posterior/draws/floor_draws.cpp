@@ -15,40 +15,102 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The normal distribution at a place, across the valley, in LogCoordinates.
-struct Across {
+/// The normal distribution at a place, in LogCoordinates: across the valley, and along it with that of the
+/// box.
+struct LocalValley {
   VectorXd center;
-  MatrixXd factor;  ///< u x k: times k standard normal numbers
-  double misfit;    ///< of the center
+  MatrixXd across, along;  ///< u x k: times k standard normal numbers
+  double misfit;           ///< of the center
 };
 
 /// False where the place is not on the floor.
-bool findAcross(const LocalSurface& place, Across& across) {
+bool findValley(const LocalSurface& place, LocalValley& valley) {
   constexpr double kQuarter = 16.0 * kHalfWidthInformation, kFarthest = 1.0;
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(place.information);
-  const Index steep = (eigen.values.array() >= kQuarter).count();
-  across.factor =
+  const Index steep = (eigen.values.array() >= kQuarter).count(), level = eigen.values.size() - steep;
+  valley.across =
       eigen.vectors.rightCols(steep) * eigen.values.tail(steep).cwiseSqrt().cwiseInverse().asDiagonal();
-  const VectorXd steps = across.factor.transpose() * place.descent;
-  across.center = place.at + across.factor * steps;
-  across.misfit = place.misfit - steps.squaredNorm();
+  const VectorXd open = eigen.values.head(level).cwiseMax(0.0).array() + kHalfWidthInformation;
+  valley.along = eigen.vectors.leftCols(level) * open.cwiseSqrt().cwiseInverse().asDiagonal();
+  const VectorXd steps = valley.across.transpose() * place.descent;
+  valley.center = place.at + valley.across * steps;
+  valley.misfit = place.misfit - steps.squaredNorm();
   return steps.norm() <= kFarthest;
 }
 
-/// Sums of weights and of weighted values at each place.
+/// Gathers points with the logarithms of their weights.
+class FloorBuilder {
+ public:
+  FloorBuilder(const LogCoordinates& coordinates, const RandomStream& random)
+      : coordinates_(coordinates), random_(random) {}
+
+  void addDraws(int place, const LocalValley& valley, double log_weight, std::size_t pairs) {
+    const double uniform = coordinates_.calcLogUniform(valley.center);
+    VectorXd normal(valley.across.cols());
+    for (std::size_t i = 0; i < 2 * pairs; ++i) {  // in pairs, so that their mean is the center
+      random_.drawNormals(static_cast<std::uint64_t>(place), i / 2, normal.data(),
+                          static_cast<std::size_t>(normal.size()));
+      const VectorXd at = valley.center + (i % 2 == 0 ? 1.0 : -1.0) * valley.across * normal;
+      if (at.cwiseAbs().maxCoeff() <= 1.0) {
+        add(place, at, std::exp(log_weight + coordinates_.calcLogUniform(at) - uniform), 0.0);
+      }
+    }
+  }
+
+  /// The place itself, then a step each way along the valley that leaves it open, short enough for any bend.
+  void addSteps(int place, const VectorXd& at, const MatrixXd& along) {
+    constexpr double kShort = 1e-4;
+    add(place, at, 0.0, 0.0);
+    for (const auto& way : along.colwise()) {
+      const double side = (at + kShort * way).cwiseAbs().maxCoeff() <= 1.0 ? kShort : -kShort;
+      add(place, (at + side * way).cwiseMax(-1.0).cwiseMin(1.0), 0.0, 1.0 / kShort);
+    }
+  }
+
+  FloorDraws take() const {
+    FloorDraws draws{MatrixXd(coordinates_.getCount(), static_cast<Index>(points_.size())),
+                     Eigen::Map<const VectorXd>(weights_.data(), static_cast<Index>(weights_.size())),
+                     places_, Eigen::Map<const VectorXd>(scales_.data(), static_cast<Index>(scales_.size()))};
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      draws.points.col(static_cast<Index>(i)) = points_[i];
+    }
+    draws.weights /= draws.weights.sum();
+    return draws;
+  }
+
+ private:
+  void add(int place, const VectorXd& at, double weight, double scale) {
+    points_.push_back(coordinates_.toParameters(at));
+    weights_.push_back(weight);
+    places_.push_back(place);
+    scales_.push_back(scale);
+  }
+
+  const LogCoordinates& coordinates_;
+  const RandomStream& random_;
+  std::vector<VectorXd> points_;
+  std::vector<double> weights_, scales_;
+  std::vector<int> places_;
+};
+
+/// Sums of weights and of weighted values at each place, and the variance that steps along the valley show.
 struct PlaceMoments {
-  double weight = 0.0, first = 0.0, second = 0.0;
+  double weight = 0.0, first = 0.0, second = 0.0, open = 0.0;
 };
 
 std::vector<PlaceMoments> sumAtPlaces(const FloorDraws& draws, const VectorXd& values) {
   std::vector<PlaceMoments> moments(static_cast<std::size_t>(draws.places.back()) + 1);
-  const double shift = draws.weights.dot(values);
+  const double mean = draws.weights.dot(values);
+  double at_place = mean;
   for (Index i = 0; i < values.size(); ++i) {
     PlaceMoments& one = moments[static_cast<std::size_t>(draws.places[static_cast<std::size_t>(i)])];
-    const double value = values[i] - shift;
+    const double value = values[i] - mean;
     one.weight += draws.weights[i];
     one.first += draws.weights[i] * value;
     one.second += draws.weights[i] * value * value;
+    at_place = draws.weights[i] == 0.0 && draws.scales[i] == 0.0 ? values[i] : at_place;
+    const double slope = draws.scales[i] * (values[i] - at_place);
+    one.open += slope * slope;
   }
   return moments;
 }
@@ -57,52 +119,34 @@ std::vector<PlaceMoments> sumAtPlaces(const FloorDraws& draws, const VectorXd& v
 
 bool FloorDraws::determine(const VectorXd& values) const {
   constexpr double kFewest = 3.0;  // as of points that show a ridge
+  constexpr double kTenth = 10.0, kHalf = 2.0;
   if (!isGiven() || !values.allFinite()) {
     return false;
   }
-  double between = 0.0, all = 0.0, squares = 0.0;
+  double between = 0.0, all = 0.0, open = 0.0, squares = 0.0;
   for (const PlaceMoments& one : sumAtPlaces(*this, values)) {
     between += one.weight > 0.0 ? one.first * one.first / one.weight : 0.0;
     all += one.second;
+    open += one.weight * one.open;
     squares += one.weight * one.weight;
   }
-  return 1.0 >= kFewest * squares && 2.0 * between <= all;
+  return 1.0 >= kFewest * squares && kHalf * between <= all && kTenth * open <= all;
 }
 
 FloorDraws drawAcrossValleys(const std::vector<LocalSurface>& places, const LogCoordinates& coordinates,
                              std::uint64_t seed) {
   constexpr std::size_t kDraws = 4000, kFewest = 40;  // standard deviations are known to some per cent
   const RandomStream random(seed, RandomPurpose::kPosteriorWalk);
+  FloorBuilder builder(coordinates, random);
   const std::size_t pairs = std::max(kFewest, kDraws / std::max<std::size_t>(places.size(), 1)) / 2;
-  FloorDraws draws;
-  std::vector<VectorXd> points;
-  std::vector<double> weights;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    Across across;
-    if (!findAcross(places[k], across)) {
-      continue;
-    }
-    for (std::size_t i = 0; i < 2 * pairs; ++i) {  // in pairs, so that their mean is the center
-      VectorXd normal(across.factor.cols());
-      random.drawNormals(k, i / 2, normal.data(), static_cast<std::size_t>(normal.size()));
-      const VectorXd at = across.center + (i % 2 == 0 ? 1.0 : -1.0) * across.factor * normal;
-      if (at.cwiseAbs().maxCoeff() <= 1.0) {
-        points.push_back(coordinates.toParameters(at));
-        weights.push_back(coordinates.calcLogUniform(at) - coordinates.calcLogUniform(across.center) -
-                          0.5 * (across.misfit - places.front().misfit));
-        draws.places.push_back(static_cast<int>(k));
-      }
+    LocalValley valley;
+    if (findValley(places[k], valley)) {
+      builder.addSteps(static_cast<int>(k), places[k].at, valley.along);
+      builder.addDraws(static_cast<int>(k), valley, -0.5 * (valley.misfit - places.front().misfit), pairs);
     }
   }
-  const auto count = static_cast<Index>(points.size());
-  draws.points.resize(coordinates.getCount(), count);
-  draws.weights.resize(count);
-  for (Index i = 0; i < count; ++i) {
-    draws.points.col(i) = points[static_cast<std::size_t>(i)];
-    draws.weights[i] = std::exp(weights[static_cast<std::size_t>(i)]);
-  }
-  draws.weights /= draws.weights.sum();
-  return draws;
+  return builder.take();
 }
 
 }  // namespace twinmap

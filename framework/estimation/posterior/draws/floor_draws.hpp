@@ -11,13 +11,17 @@ namespace twinmap {
 /// bears is not known well, so that they say something of what hardly changes along the valleys alone.
 struct FloorDraws {
   Eigen::MatrixXd points;     ///< u x n, in the parameters' units, within the bounds
-  Eigen::VectorXd weights;    ///< n, sum 1
+  Eigen::VectorXd weights;    ///< n, sum 1; 0 of places themselves and of steps along the valley
   std::vector<int> places{};  ///< n, about which of them, ascending
+  /// n, of steps: how many standard deviations of what is left open there they are less than one; 0 of others
+  Eigen::VectorXd scales{};
 
   bool isGiven() const { return weights.size() > 0; }
-  /// Whether something is determined of which these are the values (n) at the draws: from place to place it
+  /// Whether something is determined of which these are the values (n) at the points. From place to place it
   /// changes by no more than it does about each, so that at most half of its variance depends on where the
-  /// places are. At least three of them must bear weight, or nothing is known of how it changes.
+  /// places are; and steps along the valley would add a tenth of the variance at most, which is left out, so
+  /// that standard deviations are short by 5 %. At least three places must bear weight, or nothing is known
+  /// of how it changes. bench/determined.py measures how this holds (docs/benchmarks/posterior.md).
   bool determine(const Eigen::VectorXd& values) const;
 };
 

@@ -69,6 +69,10 @@ TEST(DrawsAcrossValleys, SayWhatIsDeterminedAndHowWell) {
   for (const Index along : {0, 1}) {
     EXPECT_FALSE(draws.determine(draws.points.row(along))) << along;
   }
+  // with a part that the valley leaves open: of .577 half-widths, a hundredth and half of the variance across
+  const VectorXd across = draws.points.row(1).transpose() - bend, along = draws.points.row(0);
+  EXPECT_TRUE(draws.determine(across + 0.1 * kAcross / 0.577 * along));
+  EXPECT_FALSE(draws.determine(across + 0.7 * kAcross / 0.577 * along));
   const FloorDraws of_one = drawAcrossValleys({places.front()}, banana.coordinates, 1);
   EXPECT_FALSE(of_one.determine(of_one.points.row(2)));  // one place shows no valley
 }
