@@ -133,7 +133,7 @@ std::optional<MissingTerm> explainMisfit(const CurrentFit& current, const Record
   return missing;
 }
 
-/// Those with states, which take time, are asked where no other explains all.
+/// Those with states, which take time, are asked where no other explains most.
 std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                                          const VectorXd& start) {
   const CurrentFit current = fitFrom(experiment, recording, start);
@@ -143,7 +143,8 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
     return {};
   }
   std::optional<MissingTerm> missing = explainMisfit(current, recording, CandidateKinds::kWithoutStates);
-  if (!missing || !missing->explains) {
+  constexpr double kMost = 0.9;  // of what is beyond noise, as of a clock's rival
+  if (!missing || missing->share < kMost) {
     missing = explainMisfit(current, recording, CandidateKinds::kAll);
   }
   if (missing && hasUnknownNoise(experiment.noise)) {

@@ -83,6 +83,9 @@ std::string nameOwn(const std::string& name, const ExperimentSpec& experiment,
       recordings.trials.empty()
           ? recordings.features.size() > 1
           : std::count(recordings.trials.begin(), recordings.trials.end(), recordings.trials[k]) > 1;
+  if (is_one_of_several && !recordings.labels.empty()) {
+    return recordings.labels[k] + "." + name;
+  }
   return is_one_of_several ? own + "[" + std::to_string(k + 1) + "]" : own;
 }
 
@@ -183,7 +186,7 @@ ExperimentSpec RecordedFeatures::makeExperiment(const ExperimentSpec& experiment
 }
 
 RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& recordings) const {
-  RecordedFeatures selected{layout, {}, known, {}, {}, setups};
+  RecordedFeatures selected{layout, {}, known, {}, {}, {}, setups};
   for (const std::size_t k : recordings) {
     if (!trials.empty()) {
       selected.trials.push_back(trials[k]);
@@ -194,6 +197,9 @@ RecordedFeatures RecordedFeatures::select(const std::vector<std::size_t>& record
     }
     if (!noise.empty()) {
       selected.noise.push_back(noise[k]);
+    }
+    if (!labels.empty()) {
+      selected.labels.push_back(labels[k]);
     }
   }
   return selected;
@@ -272,6 +278,7 @@ RecordedFeatures readRecordings(const ExperimentSpec& combined, const std::vecto
     RecordedFeatures all{reader.getLayout(), {}, collectKnown(combined.model.inputs, known)};
     for (const Recording& one : recordings) {
       append(readRecording(reader, *one.table, one.start, all.known), all);
+      all.labels.push_back(one.label);
     }
     return all;
   }
@@ -280,6 +287,7 @@ RecordedFeatures readRecordings(const ExperimentSpec& combined, const std::vecto
     const std::size_t trial = findTrial(combined, one.trial);
     const MeasurementReader reader(combined.trials[trial].experiment);
     appendOfTrial(readRecording(reader, *one.table, one.start, all.setups[trial].known), trial, all);
+    all.labels.push_back(one.label);
   }
   return all;
 }

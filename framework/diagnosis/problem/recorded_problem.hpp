@@ -34,6 +34,7 @@ struct RecordedFeatures {
   Eigen::VectorXd known;                  ///< of the inputs
   /// Of each recording; null where all is as the experiment says. Empty where it is for all.
   std::vector<std::shared_ptr<const OwnSetup>> own{};
+  std::vector<std::string> labels{};  ///< of each recording; empty: their numbers, "[2]"
   /// Of each recording, where its sensors have faults (takeFaults); empty where that is known of none.
   std::vector<NoiseHypothesis> noise{};
   std::vector<TrialSetup> setups{};   ///< of the experiment's trials in the place of layout and known
