@@ -27,14 +27,14 @@ bool isOfStatedNoise(const InferredMeasurement& inferred, const std::vector<Feat
 
 }  // namespace
 
-bool mayBeWrong(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& infos) {
-  return !inferred.refined->isAccepted() || inferred.basins.cols() > 1 || inferred.coverage_is_short ||
-         !isOfStatedNoise(inferred, infos);
+bool mayBeElsewhere(const InferredMeasurement& inferred) {
+  return !inferred.refined->isAccepted() || inferred.basins.cols() > 1 || inferred.coverage_is_short;
 }
 
 bool needsPosterior(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                     const std::vector<FeatureInfo>& infos) {
-  return mayBeWrong(inferred, infos) || crossesBounds(selectEstimate(inferred), parameters);
+  return mayBeElsewhere(inferred) || crossesBounds(selectEstimate(inferred), parameters) ||
+         !isOfStatedNoise(inferred, infos);
 }
 
 }  // namespace twinmap

@@ -6,13 +6,13 @@
 
 namespace twinmap {
 
-/// Whether a refined estimate may be wrong: the refinement was not accepted, the estimator knows of other
-/// basins, the refined test samples of the run had intervals that held less than they say, or the residual is
-/// not of the noise that is stated. inferred: refined; infos: of its features.
-bool mayBeWrong(const InferredMeasurement& inferred, const std::vector<FeatureInfo>& infos);
+/// Whether the posterior may lie elsewhere than a refined estimate: the refinement was not accepted, the
+/// estimator knows of other basins, or the refined test samples of the run had intervals that held less than
+/// they say.
+bool mayBeElsewhere(const InferredMeasurement& inferred);
 
-/// Whether the posterior on the simulator should take its place: it may be wrong, or an interval crosses a
-/// bound.
+/// Whether the posterior on the simulator should take its place: it may lie elsewhere, an interval crosses
+/// a bound, or the residual is not of the noise that is stated. infos: of its features.
 bool needsPosterior(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                     const std::vector<FeatureInfo>& infos);
 

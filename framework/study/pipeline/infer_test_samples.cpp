@@ -87,7 +87,7 @@ void findNeeding(const Study& study, InferredTests& tests) {
   const std::vector<FeatureInfo>& infos = study.extractor.getInfos();
   for (std::size_t i = 0; i < tests.inferred.size(); ++i) {
     if (needsPosterior(tests.inferred[i], study.experiment.model.parameters, infos)) {
-      (mayBeWrong(tests.inferred[i], infos) ? tests.wrong : tests.near).all.push_back(i);
+      (mayBeElsewhere(tests.inferred[i]) ? tests.elsewhere : tests.near).all.push_back(i);
     }
   }
 }
@@ -99,14 +99,14 @@ void chooseEvenly(std::size_t count, NeedingTests& tests) {
   }
 }
 
-/// Refined estimates stand for those that a bound alone makes another: what is sampled corrects them only.
+/// Refined estimates stand for those that are near: what is sampled corrects them only.
 void chooseSampled(InferredTests& tests) {
-  constexpr double kSureOfWrong = 304.0;  // .95 * .05 / .0125^2: coverage to 1.25 %
-  constexpr double kSureOfNear = 119.0;   // to 2 %
-  constexpr std::size_t kMinNear = 3;     // for the standard error of a correction
+  constexpr double kSureElsewhere = 304.0;  // .95 * .05 / .0125^2: coverage to 1.25 %
+  constexpr double kSureNear = 119.0;       // to 2 %
+  constexpr std::size_t kMinNear = 3;       // for the standard error of a correction
   const std::size_t n = tests.inferred.size();
-  chooseEvenly(countSampled(tests.wrong.all.size(), n, kSureOfWrong), tests.wrong);
-  chooseEvenly(std::max(kMinNear, countSampled(tests.near.all.size(), n, kSureOfNear)), tests.near);
+  chooseEvenly(countSampled(tests.elsewhere.all.size(), n, kSureElsewhere), tests.elsewhere);
+  chooseEvenly(std::max(kMinNear, countSampled(tests.near.all.size(), n, kSureNear)), tests.near);
 }
 
 void sampleAll(const Study& study, const LabelledFeatures& test, const TrustModel* trust,
@@ -180,7 +180,7 @@ void refineTests(const Study& study, const LabelledFeatures& test, const TrustMo
 }  // namespace
 
 std::vector<std::size_t> InferredTests::listSampled() const {
-  std::vector<std::size_t> sampled = wrong.sampled;
+  std::vector<std::size_t> sampled = elsewhere.sampled;
   sampled.insert(sampled.end(), near.sampled.begin(), near.sampled.end());
   return sampled;
 }

@@ -22,11 +22,11 @@ struct InferredTests {
   Estimates by_estimator;                     ///< of all
   std::vector<Refined> refined;               ///< of all, or none where they are not refined
   std::vector<InferredMeasurement> inferred;  ///< likewise
-  NeedingTests wrong;                         ///< whose refined estimate may be wrong (mayBeWrong)
-  NeedingTests near;                          ///< of which only a bound makes the posterior another
+  NeedingTests elsewhere;                     ///< whose refined estimate may lie elsewhere (mayBeElsewhere)
+  NeedingTests near;                          ///< whose posterior a bound or its noise alone makes another
   StageNotes notes;
 
-  std::size_t countNeeding() const { return wrong.all.size() + near.all.size(); }
+  std::size_t countNeeding() const { return elsewhere.all.size() + near.all.size(); }
   std::vector<std::size_t> listSampled() const;
 };
 

@@ -117,12 +117,12 @@ void setStrataWeights(const NeedingTests& tests, VectorXd& weights) {
 }
 
 /// What the others of an estimate's answers are to figures: those that need a posterior and were not sampled
-/// are left out, but for the refined ones that only a bound makes another. These stand for themselves, and
+/// are left out, but for the refined ones that are near. These stand for themselves, and
 /// those that were sampled tell by how much figures of the one kind and of the other differ.
 void setWeights(const InferredTests& tests, const Estimates& refined, Estimates& estimates) {
   const auto n = static_cast<Index>(tests.inferred.size());
   estimates.weights = VectorXd::Ones(n);
-  setStrataWeights(tests.wrong, estimates.weights);
+  setStrataWeights(tests.elsewhere, estimates.weights);
   if (tests.near.sampled.size() < tests.near.all.size()) {
     const double weight = tests.near.calcWeight();
     for (const std::size_t i : tests.near.sampled) {
@@ -168,7 +168,7 @@ std::optional<AnswerSummary> summarizeAnswers(const InferredTests& tests) {
                         VectorXd::Ones(static_cast<Index>(tests.inferred.size())),
                         tests.countNeeding(),
                         tests.listSampled().size()};
-  setStrataWeights(tests.wrong, summary.weights);
+  setStrataWeights(tests.elsewhere, summary.weights);
   setStrataWeights(tests.near, summary.weights);
   for (const InferredMeasurement& inferred : tests.inferred) {
     const Estimate answer = selectEstimate(inferred);

@@ -89,7 +89,7 @@ InferredTests makeTests() {
     tests.inferred.push_back(std::move(inferred));
   }
   tests.near = {{1, 2}, {2}};
-  tests.wrong = {{3, 4}, {4}};
+  tests.elsewhere = {{3, 4}, {4}};
   tests.inferred[2].posterior = makePosterior(1.9, 2.1, false);
   tests.inferred[4].posterior = makePosterior(3.8, 4.2, true);
   return tests;
@@ -123,7 +123,7 @@ TEST(SelectAnswers, StandForThoseThatWereNotSampled) {
   EXPECT_EQ(answers.weights, (VectorXd(6) << 1, 1, 2, 0, 2, -1).finished());
   InferredTests all = makeTests();
   all.near.all = {2};
-  all.wrong.all = {4};
+  all.elsewhere.all = {4};
   EXPECT_EQ(selectAnswers(all, MatrixXd::Ones(1, 1), kTruth).weights.size(), 0);
 }
 
