@@ -38,9 +38,15 @@ Estimate takeEstimate(const Estimates& estimates, Index sample) {
 
 std::vector<ValueDistribution> propagate(const DerivedQuantities& quantities, const Estimate& estimate) {
   const BoundedDraws& draws = estimate.draws;
-  return draws.isGiven()
-             ? quantities.propagateDraws(draws.points.topRows(quantities.countParameters()), draws.weights)
-             : quantities.propagate(estimate);
+  if (!draws.isGiven()) {
+    return quantities.propagate(estimate);
+  }
+  const MatrixXd values = quantities.calcAll(draws.points.topRows(quantities.countParameters()));
+  std::vector<ValueDistribution> distributions;
+  for (const auto& of_quantity : values.rowwise()) {
+    distributions.emplace_back(of_quantity.transpose(), draws.weights);
+  }
+  return distributions;
 }
 
 ParameterSamples takeQuantity(const DerivedEvaluation& evaluation, Index k) {

@@ -48,7 +48,7 @@ double calcMedian(VectorXd values) {
 }
 
 /// Of each output. Fourth differences of independent errors have 1 + 16 + 36 + 16 + 1 = 70 times their
-/// variance; the median of the size of a normal variable is 0.6745 of its standard deviation.
+/// variance. The median of the size of a normal variable is 0.6745 of its standard deviation.
 VectorXd calcNoise(const ResponseLayout& layout, const MatrixXd& line) {
   MatrixXd differences = line;
   for (int order = 0; order < 4; ++order) {

@@ -16,9 +16,9 @@ void LanePacket::doBegins() {
 
 /// Where the time of what happens moves with a parameter, the states before it go on by f- dt, and those
 /// behind it came by f+ dt less (saltation): s+ = dh/dy (s- + f- dt) + dh/dt dt + dh/dp - f+ dt, where
-/// nothing jumps s+ = s- + f- dt - f+ dt. It costs one evaluation of f, two where the time moves, and the
-/// steps keep their size: a table of a thousand lines a second is followed at one step a line. jumping: those
-/// of the lanes whose states `jumps` gives.
+/// nothing jumps s+ = s- + f- dt - f+ dt. It costs one evaluation of f, two where the time moves. Steps keep
+/// their size: a table of a thousand lines a second takes one a line. jumping: those of the lanes whose
+/// states `jumps` gives.
 void LanePacket::restart(unsigned lanes, unsigned jumping, program::Interpreter* jumps) {
   const unsigned moving = findMoving(lanes);
   forEach(moving, [this](int lane) { moveBy(lane, 1.0); });

@@ -98,7 +98,7 @@ void LanePacket::advance(int lane) {
   }
 }
 
-/// The first step is a hundredth of the time that the fastest state takes to change by its own size; a phase
+/// The first step is a hundredth of the time that the fastest state takes to change by its own size. A phase
 /// as short as rounding, between two events that mean the same time, is one step.
 void LanePacket::beginSteps(int lane) {
   const double size = calcNorm(lane, arrays_.state);

@@ -81,8 +81,7 @@ Searched search(const SearchData& data, const SharedStructure& structure, const 
 }
 
 /// The better of two beginnings: functions about as smooth as the box is wide, and functions that change
-/// within it, where the search would not come from the former: between them all points are far from each
-/// other.
+/// within it. The search would not get from the former to the latter: between them all points are far apart.
 SharedChoice searchFromStarts(const SearchData& data, const SharedStructure& structure, StopFlag stop) {
   constexpr double kLengthScales[] = {2.0, 0.7}, kNuggets[] = {1e-6, 1e-4};
   const Index p = data.points.rows();

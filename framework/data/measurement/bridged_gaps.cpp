@@ -108,8 +108,8 @@ class Signal {
             isHeld() && is_late};
   }
 
-  /// A time at which a sample was due, so that they are due in whole steps from there: that of the sample
-  /// nearby with which most others keep time; without a majority that of this one.
+  /// A time at which a sample was due, so that they are due in whole steps from there. It is that of the
+  /// sample nearby with which most others keep time. It is this one's own without a majority.
   double findTick(Index near) const {
     constexpr Index kReach = 8;
     const Index first = std::max<Index>(0, near - kReach),

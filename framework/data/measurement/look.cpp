@@ -69,8 +69,8 @@ void add(FoundSamples& found, double time) {
   ++found.count;
 }
 
-/// Where a counter fired twice: steps that are short beside the ten about them, which may grow as a wheel
-/// slows down.
+/// Places at which a counter fired twice: steps that are short beside the ten about them, which may grow as a
+/// wheel slows down.
 void findShortSteps(const VectorXd& steps, ColumnLook& look, const VectorXd& times) {
   constexpr double kShort = 0.2;
   constexpr Index kAbout = 5;

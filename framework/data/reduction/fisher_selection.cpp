@@ -30,8 +30,8 @@ class GreedySelection {
 
   const std::vector<Index>& getSelected() const { return selected_; }
 
-  /// Increase of the sum of log det per feature: log(1 + g A^-1 g' / r) for the sensitivities g and noise
-  /// variance r that a feature adds to information A; -infinity for one that adds no noise of its own.
+  /// Increase of the sum of log det per feature: log(1 + g A^-1 g' / r). A feature adds the sensitivities g
+  /// and the noise variance r to information A. One that adds no noise of its own has -infinity.
   VectorXd calcGains() const {
     constexpr double kOwnNoise = 1e-10;  // of a feature's variance
     VectorXd gains = VectorXd::Zero(variance_.size());

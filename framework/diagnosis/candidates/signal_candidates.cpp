@@ -83,8 +83,8 @@ TableSpec differentiate(const TableSpec& table) {
   return slope;
 }
 
-/// Terms move in time, as what was measured does by its clock; a table F of the experiment cannot, so that
-/// F - c F' stands for it, which holds for delays below the time in which the signal bends.
+/// Terms move in time, as what was measured does by its clock. A table F of the experiment cannot, so that
+/// F - c F' stands for it. This holds for delays below the time in which the signal bends.
 void delaySignal(ModelSpec& model, std::size_t index, const std::string& by) {
   SignalSpec& signal = model.excitation[index];
   holdMeasuredEnds(signal, model.simulation.duration, kDelayMargin * model.simulation.duration);

@@ -173,7 +173,7 @@ VectorXd calcDistillationScale(const SurrogatePool& pool, const NetworkTask& tas
 }
 
 /// Makes standard deviations up for what the teacher's lack. Both factors make up for the same posteriors
-/// that are not normal, so that their product would do so twice: it was up to 4 % too wide, and 50 %
+/// that are not normal, so that their product would do so twice. It was up to 4 % too wide, and 50 %
 /// intervals held 58 %.
 void inflateForTeacher(const VectorXd& student_scale, const HeldOutTargets& targets,
                        NetworkMapTraining& training) {

@@ -95,8 +95,8 @@ class Refinement {
     return end;
   }
 
-  /// Fits more and more of the response, each from the last one's answer: a chaotic response has many minima,
-  /// but its beginning has few, and they lie where the next ones do.
+  /// Fits more and more of the response, each from the last one's answer. A chaotic response has many minima.
+  /// Its beginning has few, which lie where the next ones do.
   bool tryGrowing(const RefinementStart& start) {
     if (model_.getWindows().size() == 1) {
       return false;

@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// From nearly a Gauss-Newton step to a short one along the steepest descent: one of them fits wherever the
+/// From nearly a Gauss-Newton step to a short one along the steepest descent. One of them fits wherever the
 /// linear model holds for some length, so that no iteration is lost on finding it.
 constexpr std::array<double, 4> kDampings{0.01, 1.0, 30.0, 1000.0};
 constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-10, kMaxDamping = 1e7;
@@ -93,8 +93,8 @@ BestTrial findBest(Misfit& misfit, const LocalMisfit& local, const MatrixXd& tri
   return best;
 }
 
-/// Tries all dampings from `local`. Where one improves the misfit, moves there and centres the damping on it;
-/// else raises the damping beyond all that were tried.
+/// Tries all dampings from `local`. Moves to the best one if it improves the misfit, and centres the damping
+/// on it. Otherwise raises the damping beyond all that were tried.
 bool improve(Misfit& misfit, LocalMisfit& local, double& damping) {
   BestTrial best = findBest(misfit, local, makeTrials(local, misfit.getBox(), damping));
   if (!best.local) {

@@ -56,9 +56,9 @@ void combinePValues(Trust& trust) {
   trust.p_value = std::min(1.0, 2.0 * std::min(trust.chi_square_p_value, trust.anomaly_p_value));
 }
 
-/// How rare it is that the simulator explains nothing of a simulated measurement, and how the level of false
-/// alarms is shared between those that are explained and those that are not: where these are rarer than half
-/// of the level, each of them is an alarm, else half of the level is theirs, the worst of them.
+/// How rare it is that the simulator explains nothing of a simulated measurement. The level of false alarms
+/// is shared between explained and unexplained ones. Each unexplained one is an alarm if these are rarer than
+/// half of the level. Otherwise half of the level is theirs, the worst of them.
 class UnexplainedShare {
  public:
   explicit UnexplainedShare(const TrustModel& model)

@@ -33,10 +33,10 @@ namespace {
 
 /// The joint search begins where the recordings alone ended; so few starts of its own suffice.
 constexpr int kOwnStarts = 8;
-/// Of a recording alone, where there are many parameters and each simulation is dear: their means and
-/// standard deviations are then known to a tenth of one, which is enough to show what each recording adds. So
+/// Of a recording alone, where there are many parameters and each simulation is dear. Their means and
+/// standard deviations are then known to a tenth of one. That is enough to show what each recording adds. So
 /// is a linear response about its best fit where that does (sampleLinearModel), unless a number of draws is
-/// asked for: draws that the simulator weighs would take as long as the rest.
+/// asked for. Draws that the simulator weighs would take as long as the rest.
 constexpr int kDrawsAlone = 128;
 /// Of all recordings of such a machine, unless given: half of what others take. With an effective sample size
 /// of half of these, means are known to a tenth of a standard deviation.

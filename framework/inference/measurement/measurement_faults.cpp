@@ -56,7 +56,7 @@ VectorXd subtract(VectorXd measured, Index first, const VectorXd& shape, double 
 }
 
 /// The amount of a shape in some rows that leaves the least misfit, by parabolas through three of them, from
-/// `amount` on: chi-square is quadratic in it where the features are linear, and nearly so elsewhere.
+/// `amount` on. Chi-square is quadratic in it for linear features, and nearly so elsewhere.
 double findAmount(const VectorXd& measured, Index first, const VectorXd& shape, double amount, double step,
                   const MisfitOfResponse& calcMisfit) {
   constexpr int kParabolas = 3;
@@ -102,9 +102,9 @@ struct Spike {
   double height = 0.0;  ///< above the cubic through the four neighbours
 };
 
-/// The sample of evenly spaced ones that is farthest off the cubic through its neighbours; of height 0 where
-/// none stands out: noise and curvature put half of the samples off, and a spike that makes a gross misfit
-/// is far above both.
+/// The sample of evenly spaced ones that is farthest off the cubic through its neighbours. Its height is 0 if
+/// none stands out. Noise and curvature put half of the samples off. A spike that makes a gross misfit is far
+/// above both.
 Spike findSpike(const Eigen::Ref<const VectorXd>& samples) {
   constexpr double kStandsOut = 6.0;  // of 1000 normal numbers the largest is 5 times the median
   Spike spike;

@@ -48,8 +48,8 @@ struct Tightened {
   IntegrationError error;
 };
 
-/// Goes from one tolerance to the next by the powers of ten that the error is too large by, as errors fall
-/// about as the tolerance does; never beyond what is allowed or can still be simulated.
+/// Goes from one tolerance to the next by the powers of ten that the error is too large by. Errors fall about
+/// as the tolerance does. It never goes beyond what is allowed or can still be simulated.
 Tightened search(IntegrationErrors& errors, const Tightened& from, bool relative, bool absolute) {
   Tightened best = from;
   if (!relative && !absolute) {

@@ -177,7 +177,7 @@ void measureTestSamples(const ExperimentSpec& experiment, const ExperimentSpec& 
   times.overhead = std::max(times.overhead - times.evaluation * kTestSamples, 0.0);
 }
 
-/// With as many training samples as asked for, up to 200 where they are simulated in a moment: what refines
+/// With as many training samples as asked for, up to 200 where they are simulated in a moment. What refines
 /// an estimate, and how often a posterior is sampled instead, depends on how good the map is.
 ProbedRun runSample(const ExperimentSpec& experiment, const ExperimentSpec& small, const TimedRun& few,
                     const fs::path& folder) {

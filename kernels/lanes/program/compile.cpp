@@ -36,8 +36,8 @@ class SlotAllocation {
 
   int getSlot(int node) const { return slots_[node]; }
 
-  /// Slots from the first free one for what lives within the steps: a slot is free after its value's last
-  /// use, and the one freed last is taken next, since it is the most likely to be in the cache.
+  /// Slots from the first free one for what lives within the steps. A slot is free after its value's last
+  /// use. The one freed last is taken next, since it is the most likely to be in the cache.
   Segment assign(const std::vector<Step>& steps) {
     std::vector<int> last_use(nodes_.size(), -1), free;
     for (std::size_t i = 0; i < steps.size(); ++i) {

@@ -238,8 +238,8 @@ class InferCommand {
   int count_ = 0, errors_ = 0;
 };
 
-/// The arrays of a map are read, packed and freed: to give each back to the system, and to get the next one
-/// from it, takes a page fault for each 4 kB, a third of the time of one inference. So freed memory is kept,
+/// The arrays of a map are read, packed and freed. To return each to the system, and to get the next one,
+/// takes a page fault for each 4 kB. That is a third of the time of one inference. So freed memory is kept,
 /// and comes in huge pages where the system has some.
 void keepFreedMemory() {
   constexpr std::size_t kMegabyte = 1 << 20, kHugePage = 2 * kMegabyte, kSize = 24 * kMegabyte;

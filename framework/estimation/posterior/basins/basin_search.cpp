@@ -26,8 +26,8 @@ bool isExplained(const std::vector<Basin>& basins) {
          basins.front().local.chi_square < calcChiSquareLimit(basins.front().local.degrees);
 }
 
-/// The ends of searches of more and more of the response, each from where the last one ended: a chaotic
-/// response has many minima, but its beginning has few, and they lie where the next ones do.
+/// The ends of searches of more and more of the response, each from where the last one ended. A chaotic
+/// response has many minima. Its beginning has few, which lie where the next ones do.
 std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
   constexpr int kIterations = 8;  // where a window ends is but the next one's start
   const std::size_t windows = surface.countWindows();
@@ -57,7 +57,7 @@ const Basin& findNearest(const std::vector<Basin>& basins, const VectorXd& at) {
   });
 }
 
-/// Chi-square on the way from the nearest basin to each point (u x n), in thirds: a search from a point to
+/// Chi-square on the way from the nearest basin to each point (u x n), in thirds. A search from a point to
 /// which it rises all the way would most likely end in that basin. Returns where it falls again, the lowest
 /// of these places first, but for what noise could be.
 MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, const MatrixXd& points) {

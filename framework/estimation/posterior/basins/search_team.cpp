@@ -249,7 +249,7 @@ SearchTeam::Place SearchTeam::findPlace(const Search& search) const {
   return {take(local, step), local.misfit - local.descent.dot(step)};
 }
 
-/// Ends a search that has come into a known basin, both by its place and by its chi-square: a packet of lanes
+/// Ends a search that has come into a known basin, both by its place and by its chi-square. A packet of lanes
 /// costs as much for the last searches as for all of them. One that has converged elsewhere makes a basin
 /// known.
 void SearchTeam::settle(Search& search) {

@@ -25,8 +25,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Parameters = Eigen::Ref<const VectorXd>;
 
-/// Where the rate of a state, such as a stiff bristle's, forces more steps than these, Radau IIA takes fewer
-/// and longer ones in less time. Where accuracy decides, a method of order 5 takes tolerance^(-1/5) as many.
+/// Radau IIA takes fewer, longer steps in less time where a state's rate, such as a stiff bristle's, forces
+/// more than these. A method of order 5 takes tolerance^(-1/5) as many where accuracy decides.
 constexpr double kExplicitSteps = 20000.0, kUsualTolerance = 3e-7;
 /// A controller that samples asks for steps that say nothing of stiffness.
 constexpr double kStepsOfInstant = 10.0;

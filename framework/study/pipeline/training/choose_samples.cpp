@@ -25,10 +25,10 @@ double getSeconds(const ExperimentSpec& experiment) {
   return experiment.design.train.time.value_or(kDefault);
 }
 
-/// What training on n simulations takes, from the windows of a surrogate of fewer: measured with 100 to 800
-/// simulations of mechanisms with 13 to 15 windows on one core, times follow the square of what each window
-/// learns from within a third. Searches on 300 points, and inferences in cross-validation, outweigh the
-/// cubes.
+/// What training on n simulations takes, from the windows of a surrogate of fewer. Times follow the square of
+/// what each window learns from, within a third. They were measured on one core, with 100 to 800 simulations
+/// of mechanisms of 13 to 15 windows. Searches on 300 points, and inferences in cross-validation, outweigh
+/// the cubes.
 double predictTrainingSeconds(const Surrogate& surrogate, Index samples) {
   constexpr double kWithSlopes = 3.7e-7, kWithout = 2.5e-6;  // s
   const Index slopes = surrogate.unknown * countSlopePoints(samples, surrogate.unknown);

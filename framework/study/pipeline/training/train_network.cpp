@@ -69,9 +69,9 @@ std::optional<SurrogateMapTraining> findTeacher(const Study& study, const Prepar
 }
 
 /// Tells where many simulations, which take next to nothing in lanes, may teach the network more than the
-/// surrogate does. Where surrogates of 250 promised 2.4 to 7.7 times the limit, networks of 10000 simulations
-/// were nearer to it (four storeys, top, chain, chaotic pendulum), and where they promised 1.8 one of two
-/// (end stops, not the arm).
+/// surrogate does. Networks of 10000 simulations were nearer to the limit where surrogates of 250 promised
+/// 2.4 to 7.7 times it. These were four storeys, top, chain and chaotic pendulum. One of two was nearer where
+/// they promised 1.8 (end stops, not the arm).
 void suggestSimulations(const Surrogate& teacher, const Study& study, StageNotes& notes) {
   constexpr double kFar = 2.0;
   constexpr int kMany = 10000;
