@@ -12,15 +12,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-/// In standard deviations of the basin.
 double calcDistance(const Basin& basin, const VectorXd& at) {
   const VectorXd apart = at - basin.local.at;
   return std::sqrt(apart.dot(linalg::solvePositiveDefinite(basin.covariance, apart)));
 }
-
-}  // namespace
 
 bool liesIn(const Basin& basin, const VectorXd& at) {
   return calcDistance(basin, at) < kBasinReach;

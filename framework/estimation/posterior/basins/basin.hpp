@@ -23,6 +23,9 @@ constexpr double kBasinAbove = 25.0;
 
 constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
 
+/// From its best point, in its standard deviations.
+double calcDistance(const Basin& basin, const Eigen::VectorXd& at);
+
 /// Whether a point is within kBasinReach standard deviations of a basin's minimum.
 bool liesIn(const Basin& basin, const Eigen::VectorXd& at);
 
