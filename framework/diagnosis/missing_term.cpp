@@ -99,8 +99,12 @@ MissingTerm describe(const RankedTerm& best, const std::vector<RankedTerm>& rank
   return missing;
 }
 
-/// The blind spot that moves a parameter most, up to the size that matters.
-std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored, Index p) {
+/// The blind spot that moves a parameter most, up to the size that matters. What would move by more than its
+/// bounds allow is not determined beside others, whatever is missing.
+std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored,
+                                           const std::vector<ParameterSpec>& parameters) {
+  const auto p = static_cast<Index>(parameters.size());
+  const VectorXd most = calcWidths(parameters).cwiseQuotient(scored.stddevs.head(p));
   std::optional<UnnoticedTerm> worst;
   for (const BlindSpot& spot : calcBlindSpots(scored, p, kLevel)) {
     if (!std::isfinite(spot.noticed)) {
@@ -108,10 +112,11 @@ std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored, Index
     }
     const TermCandidate& candidate = spot.candidate;
     const double size = std::min(spot.noticed, candidate.size);
-    Index most = 0;
-    if (const double shift = spot.shifts.cwiseAbs().maxCoeff(&most) * size / spot.noticed;
-        !worst || shift > worst->shift) {
-      worst = {candidate.term, candidate.meaning, candidate.unit, size, static_cast<std::size_t>(most),
+    VectorXd shifts = spot.shifts.cwiseAbs() * (size / spot.noticed);
+    shifts = (shifts.array() > most.array()).select(0.0, shifts);
+    Index moved = 0;
+    if (const double shift = shifts.maxCoeff(&moved); !worst || shift > worst->shift) {
+      worst = {candidate.term, candidate.meaning, candidate.unit, size, static_cast<std::size_t>(moved),
                shift};
     }
   }
@@ -162,7 +167,7 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   ModelTest test;
   if (!unstated) {
-    test.unnoticed = findUnnoticed(scored, p);
+    test.unnoticed = findUnnoticed(scored, experiment.model.parameters);
   }
   CurrentFit current{experiment, known.point, known.chi_square, known.degrees};
   std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
