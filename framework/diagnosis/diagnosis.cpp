@@ -298,4 +298,11 @@ Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& rec
   return diagnosis;
 }
 
+Diagnosis diagnoseExplained(const ExperimentSpec& experiment, const DiagnosedRecordings& recordings,
+                            const DiagnosisOptions& options) {
+  Diagnosis diagnosis = diagnose(experiment, recordings.features, options);
+  diagnosis.alone = recordings.alone;
+  return diagnosis;
+}
+
 }  // namespace twinmap

@@ -7,6 +7,7 @@
 
 #include "framework/diagnosis/diagnosis_step.hpp"
 #include "framework/diagnosis/problem/recorded_problem.hpp"
+#include "framework/diagnosis/problem/sensor_faults.hpp"
 #include "framework/diagnosis/remainder/remainder.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
 
@@ -85,5 +86,9 @@ struct Diagnosis {
 /// step, and some 40 to 80 for the fits.
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options);
+
+/// The same of recordings as inference explains each alone (Diagnosis::alone).
+Diagnosis diagnoseExplained(const ExperimentSpec& experiment, const DiagnosedRecordings& recordings,
+                            const DiagnosisOptions& options);
 
 }  // namespace twinmap

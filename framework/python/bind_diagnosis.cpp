@@ -46,9 +46,8 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
   Diagnosis diagnosis;
   {
     const py::gil_scoped_release release;
-    DiagnosedRecordings read = explainSensors(inferrer, experiment, list.get(), values);
-    diagnosis = diagnose(experiment, read.features, options);
-    diagnosis.alone = std::move(read.alone);
+    const DiagnosedRecordings read = explainSensors(inferrer, experiment, list.get(), values);
+    diagnosis = diagnoseExplained(experiment, read, options);
     if (!page.empty()) {
       writeTextFile(page,
                     makeDiagnosisPage(diagnosis, experiment, read.features, nameRecordings(sources, starts)));

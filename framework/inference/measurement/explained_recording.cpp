@@ -86,8 +86,8 @@ class Explaining {
  private:
   const SimulatorRefiner& getSimulator() const { return *explained_.setup.simulator; }
   const MeasurementReader& getReader() const { return *explained_.setup.reader; }
-  const SimulatorFit& getFit() const { return *upd().posterior->fit; }
-  const InferredMeasurement& upd() const { return explained_.inferred; }
+  const SimulatorFit& getFit() const { return *getInferred().posterior->fit; }
+  const InferredMeasurement& getInferred() const { return explained_.inferred; }
   InferredMeasurement& upd() { return explained_.inferred; }
 
   SampledMeasurement sample(const AvailableFeatures& found) const {
@@ -156,7 +156,7 @@ class Explaining {
 
   bool tryClock() {
     std::optional<ClockedMeasurement> clocked =
-        findClock(explained_.setup, explained_.found, explained_.known, options_, upd());
+        findClock(explained_.setup, explained_.found, explained_.known, options_, getInferred());
     if (!clocked) {
       return false;
     }
@@ -186,11 +186,11 @@ class Explaining {
 
   /// What speaks against the model, where it explains nothing and no fault of the recording does.
   std::vector<std::string> listAgainst() const {
-    const std::string status = listStatuses(upd()).front();
+    const std::string status = listStatuses(getInferred()).front();
     const bool explains_nothing = status == getNotice(Notice::kNotSimulated).name ||
                                   status == getNotice(Notice::kModelMismatch).name ||
                                   status == getNotice(Notice::kUnreliable).name;
-    if (!explains_nothing || !upd().fault.empty()) {
+    if (!explains_nothing || !getInferred().fault.empty()) {
       return {};
     }
     std::vector<std::string> against = listModelRemarks(getReader().getExperiment().model);

@@ -144,11 +144,9 @@ TEST(JointFaults, ColourWidensTheIntervals) {
 /// A diagnosis of recordings of noise that `make` makes.
 Diagnosis diagnoseThem(const std::function<VectorXd(std::mt19937&)>& make) {
   const Joint joint(make);
-  DiagnosedRecordings explained =
-      explainSensors(JointInferrer(joint.experiment, {}), joint.experiment, joint.recordings, {});
-  Diagnosis diagnosis = diagnose(joint.experiment, explained.features, {});
-  diagnosis.alone = std::move(explained.alone);
-  return diagnosis;
+  return diagnoseExplained(
+      joint.experiment,
+      explainSensors(JointInferrer(joint.experiment, {}), joint.experiment, joint.recordings, {}), {});
 }
 
 TEST(JointFaults, AreNotTakenForMissingTerms) {

@@ -88,12 +88,11 @@ void diagnose(const DiagnoseArguments& arguments) {
   const std::vector<KnownValue> known = parseKnownValues(arguments.known);
   const JointInferrer inferrer(experiment, known);
   const RecordingList list(inferrer, readTables(arguments, inferrer), {arguments.starts, {}});
-  DiagnosedRecordings recordings = explainSensors(inferrer, experiment, list.get(), known);
+  const DiagnosedRecordings recordings = explainSensors(inferrer, experiment, list.get(), known);
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
   options.posterior = makePosteriorOptions(experiment, SimulatorPosteriorOptions{}.draws);
-  Diagnosis diagnosis = twinmap::diagnose(experiment, recordings.features, options);
-  diagnosis.alone = std::move(recordings.alone);
+  const Diagnosis diagnosis = diagnoseExplained(experiment, recordings, options);
   waiting.clear();
   if (!diagnosis.before.isExplained()) {
     for (const std::string& against : listModelRemarks(experiment.model)) {
