@@ -23,8 +23,9 @@ using Eigen::VectorXd;
 namespace {
 
 /// Without the searches and draws that only a posterior to be believed is worth.
-ExplainedFit explain(const RecordingsProblem& problem, const MatrixXd& given,
-                     SimulatorPosteriorOptions options) {
+ExplainedFit explain(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                     const MatrixXd& given, SimulatorPosteriorOptions options) {
+  const RecordingsProblem problem(experiment, recordings);
   options.search.settles = true;
   options.spares_misfit = true;
   ExplainedFit fit{samplePosterior(problem.get(), given, options), {}};
@@ -32,7 +33,7 @@ ExplainedFit explain(const RecordingsProblem& problem, const MatrixXd& given,
     throw std::runtime_error(fit.posterior.message);
   }
   const VectorXd residual =
-      problem.hasFaults() ? problem.linearize(fit.posterior.best).residual : fit.posterior.residual;
+      recordings.hasFaults() ? problem.linearize(fit.posterior.best).residual : fit.posterior.residual;
   fit.test = testResidual(residual, fit.posterior.degrees, problem.listInfos());
   return fit;
 }
@@ -61,18 +62,17 @@ AveragedEstimate mix(const std::vector<SimulatorPosterior>& posteriors, const st
 /// One diagnosis on its way.
 class Diagnoser {
  public:
-  Diagnoser(const RecordedFeatures& recordings, const DiagnosisOptions& options)
-      : recordings_(recordings), options_(options) {}
+  Diagnoser(const RecordedFeatures& recordings, const RecordedFeatures& coloured,
+            const DiagnosisOptions& options)
+      : recordings_(recordings), coloured_(coloured), options_(options) {}
 
   Diagnosis run(const ExperimentSpec& experiment) {
-    const RecordingsProblem problem(experiment, recordings_);
-    const auto u = static_cast<Index>(problem.getUnknown().size());
     Diagnosis diagnosis;
     diagnosis.level = options_.level;
     diagnosis.shared = experiment.model.parameters.size();
     {
       const SearchStage stage("fit the model as it is");
-      diagnosis.before = explain(problem, MatrixXd(u, 0), options_.posterior);
+      diagnosis.before = explain(experiment, recordings_, {}, options_.posterior);
     }
     const SimulatorPosterior& before = diagnosis.before.posterior;
     shared_ = static_cast<Index>(experiment.model.parameters.size());
@@ -136,8 +136,7 @@ class Diagnoser {
     diagnosis.after = diagnosis.before;
     while (diagnosis.found > 0) {
       const CurrentFit& last = fits[diagnosis.found];
-      const RecordingsProblem problem(last.experiment, recordings_);
-      diagnosis.after = explain(problem, last.point, makeFittedOptions());
+      diagnosis.after = explain(last.experiment, recordings_, last.point, makeFittedOptions());
       DiagnosisStep& step = diagnosis.steps[diagnosis.found - 1];
       if (!options_.accepted.empty() || diagnosis.after.isExplained() || holdsCautiously(step)) {
         break;
@@ -164,11 +163,11 @@ class Diagnoser {
 
   /// Where no term is found, noise may be what it was found to be of each recording alone.
   void countColours(Diagnosis& diagnosis) const {
-    const RecordingsProblem problem(diagnosis.corrected, recordings_, NoiseColours::kCounted);
-    if (!problem.hasFaults()) {
+    if (!coloured_.hasFaults()) {
       return;
     }
-    ExplainedFit fit = explain(problem, diagnosis.after.posterior.best, makeFittedOptions());
+    ExplainedFit fit =
+        explain(diagnosis.corrected, coloured_, diagnosis.after.posterior.best, makeFittedOptions());
     if (fit.isExplained() && fit.posterior.isReliable()) {
       diagnosis.after = std::move(fit);
       diagnosis.is_coloured = true;
@@ -190,7 +189,7 @@ class Diagnoser {
     return process && process->log_evidence > of_terms + kTiedEvidence ? process : std::nullopt;
   }
 
-  const RecordedFeatures& recordings_;
+  const RecordedFeatures &recordings_, &coloured_;
   const DiagnosisOptions& options_;
   Index shared_ = 0;  // parameters of the machine, before any term
 };
@@ -216,17 +215,35 @@ void sizeNoiseBy(const ExplainedFit& fit, const ExperimentSpec& stated, const Re
 }
 
 /// With the noise that is left by what was found: as long as more is found.
-void diagnoseAgain(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                   const DiagnosisOptions& options, ExperimentSpec& sized, Diagnosis& diagnosis) {
+void diagnoseAgain(const ExperimentSpec& experiment, const RecordedFeatures& recordings, Diagnoser& diagnoser,
+                   ExperimentSpec& sized, Diagnosis& diagnosis) {
   constexpr int kRounds = 4;  // at most three terms are found, mostly at once
   for (int round = 0; round < kRounds && diagnosis.found > 0; ++round) {
     const std::vector<std::string> before = diagnosis.listTerms();
     sizeNoiseBy(diagnosis.after, experiment, recordings, sized);
-    diagnosis = Diagnoser(recordings, options).run(sized);
+    diagnosis = diagnoser.run(sized);
     if (diagnosis.listTerms() == before) {
       return;
     }
   }
+}
+
+Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                   const RecordedFeatures& coloured, const DiagnosisOptions& options) {
+  requireSystem(experiment);
+  ExperimentSpec sized = experiment;
+  if (hasUnknownNoise(experiment.noise)) {
+    const SearchStage stage("find the size of the noise");
+    sizeNoiseBy(explain(experiment, recordings, {}, options.posterior), experiment, recordings, sized);
+  }
+  Diagnoser diagnoser(recordings, coloured, options);
+  Diagnosis diagnosis = diagnoser.run(sized);
+  if (hasUnknownNoise(experiment.noise)) {
+    diagnoseAgain(experiment, recordings, diagnoser, sized, diagnosis);
+  }
+  diagnosis.noise = sized.noise;
+  copyNoise(experiment, diagnosis.corrected);
+  return diagnosis;
 }
 
 }  // namespace
@@ -281,26 +298,12 @@ std::vector<std::string> Diagnosis::listFaults() const {
 
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options) {
-  requireSystem(experiment);
-  ExperimentSpec sized = experiment;
-  if (hasUnknownNoise(experiment.noise)) {
-    const RecordingsProblem problem(experiment, recordings);
-    const MatrixXd none(static_cast<Index>(problem.getUnknown().size()), 0);
-    const SearchStage stage("find the size of the noise");
-    sizeNoiseBy(explain(problem, none, options.posterior), experiment, recordings, sized);
-  }
-  Diagnosis diagnosis = Diagnoser(recordings, options).run(sized);
-  if (hasUnknownNoise(experiment.noise)) {
-    diagnoseAgain(experiment, recordings, options, sized, diagnosis);
-  }
-  diagnosis.noise = sized.noise;
-  copyNoise(experiment, diagnosis.corrected);
-  return diagnosis;
+  return diagnose(experiment, recordings, recordings, options);
 }
 
 Diagnosis diagnoseExplained(const ExperimentSpec& experiment, const DiagnosedRecordings& recordings,
                             const DiagnosisOptions& options) {
-  Diagnosis diagnosis = diagnose(experiment, recordings.features, options);
+  Diagnosis diagnosis = diagnose(experiment, recordings.features, recordings.coloured, options);
   diagnosis.alone = recordings.alone;
   return diagnosis;
 }

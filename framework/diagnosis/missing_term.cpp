@@ -159,8 +159,8 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
 }
 
 /// Of recordings that noise explains, as large as it was found (takeFaults).
-ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                        const KnownFit& known) {
+ModelTest testTerms(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                    const KnownFit& known) {
   const bool unstated = hasUnknownNoise(experiment.noise);
   const ScoredCandidates scored =
       scoreCandidates(experiment, recordings, known.point, CandidateKinds::kWithoutStates);
@@ -192,12 +192,20 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
   return test;
 }
 
-/// Of recordings with offsets: beside these, or in their place. That is where noise as it is stated remains
-/// with a term other than an offset. without: where they are not integrated out.
-ModelTest testWithOffsets(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                          const RecordedFeatures& without, const KnownFit& known) {
-  ModelTest test = testExplained(experiment, recordings, known);
-  ModelTest instead = testExplained(experiment, without, known);
+/// Of recordings whose noise has offsets or a colour: beside these, or in their place. That is where noise as
+/// it is stated remains with a term other than an offset. without: where they do not count.
+ModelTest testBesideFaults(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                           const RecordedFeatures& without, const KnownFit& known) {
+  ModelTest test = testTerms(experiment, recordings, known);
+  const auto may_be_physics = [](const NoiseHypothesis& noise) {
+    return std::any_of(noise.outputs.begin(), noise.outputs.end(), [](const OutputNoise& output) {
+      return output.has_offset || !output.colours.empty();
+    });
+  };
+  if (std::none_of(recordings.noise.begin(), recordings.noise.end(), may_be_physics)) {
+    return test;
+  }
+  ModelTest instead = testTerms(experiment, without, known);
   const bool replaces =
       instead.missing && instead.missing->explains && instead.missing->term.rfind("offset.", 0) != 0;
   if (replaces) {
@@ -211,12 +219,11 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
   const SimulatorFit* fit = findFit(inferred);
   RecordedFeatures explained = recording, without = recording;
   if (fit == nullptr) {
-    return testExplained(experiment, recording, known);
+    return testTerms(experiment, recording, known);
   }
-  takeFaults(*fit, {true}, 0, explained);
+  takeFaults(*fit, {true, true, true}, 0, explained);
   takeFaults(*fit, {}, 0, without);
-  return fit->hasOffset() ? testWithOffsets(experiment, explained, without, known)
-                          : testExplained(experiment, explained, known);
+  return testBesideFaults(experiment, explained, without, known);
 }
 
 /// The recordings whose clocks have no fault, and the point without what is of the others alone.
@@ -309,22 +316,16 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   const bool misfits = isMismatch(statuses) || inferred.disagrees();
   RecordedFeatures without = recordings, explained = recordings;
   takeFaults(inferred.alone, {}, without);
-  takeFaults(inferred.alone, {true}, explained);
+  takeFaults(inferred.alone, {true, true, true}, explained);
   const auto [kept, point] = leaveClocks(experiment, explained, inferred);
   const RecordedFeatures kept_without = leaveClocks(experiment, without, inferred).first;
   if (kept.features.empty()) {
     return;
   }
-  const bool has_offsets =
-      std::any_of(inferred.alone.begin(), inferred.alone.end(), [](const RecordingInference& one) {
-        const SimulatorFit* fit = findFit(one.inferred);
-        return fit != nullptr && fit->hasOffset();
-      });
   const KnownFit known{point, joint.chi_square, joint.degrees};
   try {
-    inferred.model_test = misfits       ? ModelTest{explainMisfit(experiment, kept_without, point)}
-                          : has_offsets ? testWithOffsets(experiment, kept, kept_without, known)
-                                        : testExplained(experiment, kept, known);
+    inferred.model_test = misfits ? ModelTest{explainMisfit(experiment, kept_without, point)}
+                                  : testBesideFaults(experiment, kept, kept_without, known);
   } catch (const std::runtime_error&) {
     // the best fit cannot be simulated again: the inference's own statuses say what is wrong
   }

@@ -12,6 +12,7 @@
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/inference/joint/join_trials.hpp"
 #include "framework/inference/measurement/supposed_input.hpp"
 
 namespace twinmap {
@@ -21,9 +22,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-/// With more unknown parameters than these, those of single recordings are integrated out (JointInferrer).
-constexpr Index kMaxDrawnParameters = 8;
 
 /// A trial with what simulates it around a point.
 struct TrialMisfit {
@@ -91,36 +89,16 @@ std::string nameOwn(const std::string& name, const ExperimentSpec& experiment,
 
 PosteriorProblem makeRecordedProblem(const Simulators& simulators, const std::vector<std::size_t>& assigned,
                                      const ExperimentSpec& experiment, const RecordedFeatures& recordings) {
-  PosteriorProblem problem;
-  problem.unknown = experiment.model.parameters;
-  problem.priors = experiment.model.priors;
-  const std::size_t shared = problem.unknown.size();
+  std::vector<MeasuredTrial> trials;
   for (std::size_t k = 0; k < recordings.features.size(); ++k) {
-    const SimulatorRefiner& simulator = *simulators[assigned[k]];
-    const std::vector<ParameterSpec>& own = simulator.getUnknown();
-    MeasuredTrial trial = simulator.makeTrial(recordings.features[k], recordings.getKnown(k));
-    for (std::size_t j = shared; j < own.size(); ++j) {
-      trial.unknown[j] = static_cast<Index>(problem.unknown.size());
-      problem.unknown.push_back(own[j]);
-      problem.unknown.back().name.text = nameOwn(own[j].name.text, experiment, recordings, k);
+    trials.push_back(simulators[assigned[k]]->makeTrial(recordings.features[k], recordings.getKnown(k)));
+    if (const NoiseHypothesis faults = recordings.getNoise(k); !faults.isPlain()) {
+      trials.back().noise = faults;
     }
-    problem.trials.push_back(std::move(trial));
   }
-  const auto all = static_cast<Index>(problem.unknown.size());
-  problem.drawn =
-      recordings.features.size() == 1 || all <= kMaxDrawnParameters ? all : static_cast<Index>(shared);
-  return problem;
-}
-
-/// Without outputs of which nothing else is left.
-void dropColours(NoiseHypothesis& noise) {
-  for (OutputNoise& output : noise.outputs) {
-    output.colours.clear();
-  }
-  noise.outputs.erase(
-      std::remove_if(noise.outputs.begin(), noise.outputs.end(),
-                     [](const OutputNoise& one) { return one.factor == 1.0 && !one.has_offset; }),
-      noise.outputs.end());
+  return joinTrials(std::move(trials), experiment.model, [&](std::size_t k, const std::string& name) {
+    return nameOwn(name, experiment, recordings, k);
+  });
 }
 
 /// Of one recording after the other.
@@ -169,6 +147,10 @@ void appendOfTrial(const RecordedFeatures& one, std::size_t trial, RecordedFeatu
 }
 
 }  // namespace
+
+bool RecordedFeatures::hasFaults() const {
+  return std::any_of(noise.begin(), noise.end(), [](const NoiseHypothesis& one) { return !one.isPlain(); });
+}
 
 const ResponseLayout& RecordedFeatures::getLayout(std::size_t recording) const {
   const OwnSetup* setup = findOwn(recording);
@@ -326,25 +308,13 @@ SingleRecording takeRecording(const ExperimentSpec& experiment, const RecordedFe
   return single;
 }
 
-RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                     NoiseColours colours)
+RecordingsProblem::RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings)
     : outputs_(countOutputs(recordings)) {
   const std::vector<std::size_t> assigned = assignSimulators(experiment, recordings, simulators_);
   problem_ = makeRecordedProblem(simulators_, assigned, experiment, recordings);
   for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
     faults_.push_back(recordings.getNoise(k));
-    if (colours == NoiseColours::kIgnored) {
-      dropColours(faults_.back());
-    }
-    if (!faults_.back().isPlain()) {
-      problem_.trials[k].noise = faults_.back();
-    }
   }
-}
-
-bool RecordingsProblem::hasFaults() const {
-  return std::any_of(faults_.begin(), faults_.end(),
-                     [](const NoiseHypothesis& noise) { return !noise.isPlain(); });
 }
 
 std::vector<FeatureInfo> RecordingsProblem::listInfos() const {

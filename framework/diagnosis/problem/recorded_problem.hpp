@@ -44,6 +44,7 @@ struct RecordedFeatures {
   NoiseHypothesis getNoise(std::size_t recording) const {
     return noise.empty() ? NoiseHypothesis() : noise[recording];
   }
+  bool hasFaults() const;
   const OwnSetup* findOwn(std::size_t recording) const {
     return own.empty() ? nullptr : own[recording].get();
   }
@@ -107,25 +108,18 @@ struct RecordingFit {
   double chi_square = 0.0;
 };
 
-/// Whether the colour that was found of a recording's noise counts, or may be what the model lacks.
-enum class NoiseColours { kIgnored, kCounted };
-
 /// An experiment that is to explain recordings: the parameters are those of the machine, then those that each
 /// recording leaves unknown besides. For one thread.
 class RecordingsProblem {
  public:
   /// `recordings` must outlive the object. Throws ExperimentError where a feature has no noise.
-  RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                    NoiseColours colours = NoiseColours::kIgnored);
+  RecordingsProblem(const ExperimentSpec& experiment, const RecordedFeatures& recordings);
   RecordingsProblem(const RecordingsProblem&) = delete;
   RecordingsProblem& operator=(const RecordingsProblem&) = delete;
 
   const std::vector<ParameterSpec>& getUnknown() const { return problem_.unknown; }
   const PosteriorProblem& get() const { return problem_; }
   const SimulatorRefiner& getSimulator() const { return *simulators_.front(); }
-
-  /// Whether sensors of some recording have faults that count.
-  bool hasFaults() const;
 
   /// Of all residuals, for testResidual(): each recording's outputs have numbers of their own.
   std::vector<FeatureInfo> listInfos() const;

@@ -27,10 +27,12 @@ void takeFaults(const SimulatorFit& fit, const TakenFaults& taken, std::size_t r
       continue;
     }
     OutputNoise noise{found.output, found.factor, found.has_offset && taken.offsets};
-    if (found.autoregression.size() > 0) {
+    if (found.autoregression.size() > 0 && taken.colours) {
       noise.colours.push_back({found.autoregression});
     }
-    recordings.noise[recording].outputs.push_back(std::move(noise));
+    if (found.factor != 1.0 || noise.has_offset || !noise.colours.empty()) {
+      recordings.noise[recording].outputs.push_back(std::move(noise));
+    }
   }
 }
 
@@ -49,13 +51,16 @@ void takeFaults(const std::vector<RecordingInference>& alone, const TakenFaults&
 DiagnosedRecordings explainSensors(const JointInferrer& inferrer, const ExperimentSpec& experiment,
                                    const std::vector<Recording>& recordings,
                                    const std::vector<KnownValue>& known) {
-  DiagnosedRecordings explained{readRecordings(experiment, recordings, known), {}};
+  DiagnosedRecordings explained{readRecordings(experiment, recordings, known), {}, {}};
   std::vector<ExplainedRecording> alone = inferrer.explainAlone(recordings);
   for (std::size_t k = 0; k < alone.size(); ++k) {
     explained.alone.push_back(
         {recordings[k].label, std::move(alone[k].inferred), std::move(alone[k].posterior)});
   }
-  takeFaults(explained.alone, {alone.size() > 1, false}, explained.features);
+  const bool offsets = alone.size() > 1;
+  explained.coloured = explained.features;
+  takeFaults(explained.alone, {offsets, false}, explained.features);
+  takeFaults(explained.alone, {offsets, false, true}, explained.coloured);
   return explained;
 }
 

@@ -8,11 +8,11 @@ namespace twinmap {
 struct TakenFaults {
   bool offsets = false;        ///< else they compete with other terms
   bool unstated_sizes = true;  ///< else those that the experiment does not state are not taken
+  bool colours = false;        ///< else they may be what the model lacks
 };
 
 /// Takes a recording as inference explains it alone. Samples that are no noise are left out, and sizes of
-/// noise that were found stand for those stated. Offsets are integrated out; colours are kept for a problem
-/// that counts them.
+/// noise that were found stand for those stated. Offsets are integrated out.
 void takeFaults(const SimulatorFit& fit, const TakenFaults& taken, std::size_t recording,
                 RecordedFeatures& recordings);
 
@@ -22,7 +22,7 @@ void takeFaults(const std::vector<RecordingInference>& alone, const TakenFaults&
 
 /// Recordings as inference explains each alone, for a diagnosis.
 struct DiagnosedRecordings {
-  RecordedFeatures features;
+  RecordedFeatures features, coloured;  ///< without and with the colours of the noise
   std::vector<RecordingInference> alone;
 };
 

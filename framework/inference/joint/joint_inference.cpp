@@ -16,6 +16,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
+#include "framework/inference/joint/join_trials.hpp"
 #include "framework/inference/joint/joint_estimate.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
@@ -41,9 +42,6 @@ constexpr int kDrawsAlone = 128;
 /// Of all recordings of such a machine, unless given: half of what others take. With an effective sample size
 /// of half of these, means are known to a tenth of a standard deviation.
 constexpr int kDrawsOfMany = 256;
-/// With more unknown parameters than these, those of single recordings are integrated out: importance
-/// sampling is good for some ten dimensions.
-constexpr Index kMaxDrawn = 8;
 
 /// The minimum of the sum of the recordings' quadratic misfits about their own minima, each over what it
 /// alone leaves unknown: nearly that of all together. The prior counts in each, which moves it by little.
@@ -336,23 +334,12 @@ std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Re
 
 PosteriorProblem JointInferrer::makeProblem(const std::vector<Recording>& recordings,
                                             const std::vector<ExplainedRecording>& alone) const {
-  PosteriorProblem problem;
-  problem.unknown = getParameters();
-  problem.priors = members_.front().reader->getExperiment().model.priors;
-  const auto shared = static_cast<Index>(problem.unknown.size());
-  for (std::size_t k = 0; k < recordings.size(); ++k) {
-    problem.trials.push_back(alone[k].makeTrial());
-    MeasuredTrial& trial = problem.trials.back();
-    const std::vector<ParameterSpec>& own = alone[k].setup.simulator->getUnknown();
-    for (Index j = shared; j < static_cast<Index>(own.size()); ++j) {
-      trial.unknown[static_cast<std::size_t>(j)] = static_cast<Index>(problem.unknown.size());
-      problem.unknown.push_back(own[static_cast<std::size_t>(j)]);
-      problem.unknown.back().name.text = recordings[k].label + "." + problem.unknown.back().name.text;
-    }
+  std::vector<MeasuredTrial> trials;
+  for (const ExplainedRecording& one : alone) {
+    trials.push_back(one.makeTrial());
   }
-  const auto all = static_cast<Index>(problem.unknown.size());
-  problem.drawn = all <= kMaxDrawn ? all : shared;
-  return problem;
+  return joinTrials(std::move(trials), members_.front().reader->getExperiment().model,
+                    [&](std::size_t k, const std::string& name) { return recordings[k].label + "." + name; });
 }
 
 void JointInferrer::nameNoise(std::vector<ExplainedRecording>& alone, JointInference& inferred) {
