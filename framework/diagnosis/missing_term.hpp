@@ -8,13 +8,14 @@
 
 namespace twinmap {
 
-/// What a measurement that was inferred says of terms that the model lacks, of those without states that
-/// diagnose() knows: sets inferred.model_test. Of a misfit or a clock's fault that is the first term that
-/// diagnose() would name. Any other term has evidence (kTiedEvidence), stands out of what remains with it,
-/// and moves a parameter by more than its standard deviation. Nothing is asked of a model that is not a
-/// system simulated in time. Nor is it where no simulation is known that explains the measurement, but for a
-/// misfit. Cost: one simulation with derivatives along all candidates, and fits with the three best where one
-/// of them stands out, some 50 simulations with derivatives.
+/// What a measurement that was inferred says of terms that the model lacks, of those that diagnose() knows;
+/// those with states are asked where the residual is suspicious. Sets inferred.model_test. Of a misfit or a
+/// clock's fault that is the first term that diagnose() would name. Any other term has evidence
+/// (kTiedEvidence), stands out of what remains with it, and moves a parameter by more than its standard
+/// deviation. Nothing is asked of a model that is not a system simulated in time. Nor is it where no
+/// simulation is known that explains the measurement, but for a misfit. Cost: one simulation with derivatives
+/// along all candidates, and fits with the three best where one of them stands out, some 50 simulations with
+/// derivatives.
 void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                InferredMeasurement& inferred);
 

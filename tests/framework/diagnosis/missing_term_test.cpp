@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/measurement/direct_inference.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
@@ -11,6 +12,9 @@ namespace twinmap {
 namespace {
 
 using Statuses = std::vector<std::string>;
+
+const std::string kReleased =
+    std::string(TWINMAP_SOURCE_DIR) + "/experiments/mechanisms/released_pendulum.yaml";
 
 /// The cart's measurement, inferred and tested.
 struct TestedCart {
@@ -51,6 +55,35 @@ TEST(MissingTerm, IsNamedThoughNoiseWouldExplainTheMeasurement) {
   EXPECT_GT(missing->log_evidence, 3.0);
   EXPECT_LT(missing->shifts[1], -1.0);  // the damping had taken up the friction
   EXPECT_NE(cart.describe().find("d would fall by"), std::string::npos);
+}
+
+/// A pendulum let go, with a bristle on its joint that slips at a moment `level`.
+Eigen::VectorXd measureBristle(const std::string& level) {
+  const ExperimentSpec machine =
+      loadExperiment(kReleased, {"system.friction=[{coordinate: angle, model: lugre, coulomb: " + level +
+                                 ", bristle: {state: z, stiffness: 0.1, damping: 0}}]"});
+  const ResponseLayout layout = makeLayout(machine);
+  Eigen::MatrixXd response(layout.getRowCount(), 1);
+  SampleStatus status;
+  makeTrustedSimulator(machine.model, layout.times)
+      ->simulate(calcBoxCenter(collectSampled(machine.model)), response, &status);
+  return makeExtractor(machine, layout)
+      .extract(addNoise(response, ResponseNoise(machine.noise, layout), {1, RandomPurpose::kTestNoise}))
+      .col(0);
+}
+
+TEST(MissingTerm, IsAskedWithStatesWhereTheResidualIsSuspicious) {
+  const ExperimentSpec model = loadExperiment(kReleased, {});
+  const auto infer = [&](const Eigen::VectorXd& features) {
+    InferredMeasurement inferred = DirectInference(MeasurementReader(model)).infer(features, {});
+    testModel(model, {makeLayout(model), {features}, {}}, inferred);
+    return inferred;
+  };
+  const InferredMeasurement sticking = infer(measureBristle("5e-3"));
+  ASSERT_NE(sticking.findMissing(), nullptr);
+  const std::string& term = sticking.findMissing()->term;
+  EXPECT_TRUE(term == "lugre.angle" || term == "hysteresis.angle") << term;
+  EXPECT_EQ(infer(measureBristle("1e-6")).findMissing(), nullptr);
 }
 
 TEST(MissingTerm, GoesBeforeNoiseOfAnotherKind) {
