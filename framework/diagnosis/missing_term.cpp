@@ -87,6 +87,22 @@ const RankedTerm* fitBest(const CurrentFit& current, const RecordedFeatures& rec
   return best != nullptr && best->finding.log_evidence > 0.0 ? best : nullptr;
 }
 
+bool isTied(const RankedTerm& one, const RankedTerm& best) {
+  return one.finding.fitted && best.finding.log_evidence - one.finding.log_evidence < kTiedEvidence;
+}
+
+/// Of the terms that are tied with the best, that with the largest evidence of those that have some and move
+/// a parameter by more than its standard deviation; null of none.
+const RankedTerm* findMoving(const RankedTerm& best, const std::vector<RankedTerm>& ranked) {
+  const RankedTerm* moving = nullptr;
+  for (const RankedTerm& one : ranked) {
+    const bool moves = isTied(one, best) && one.finding.log_evidence > kTiedEvidence &&
+                       one.finding.shifts.cwiseAbs().maxCoeff() > 1.0;
+    moving = moves && (moving == nullptr || hasMoreEvidence(one, *moving)) ? &one : moving;
+  }
+  return moving;
+}
+
 /// Whether what remains with a term is noise of the sizes that are supposed.
 bool explains(const CurrentFit& current, const RecordedFeatures& recordings, const FittedTerm& term) {
   const RecordingsProblem problem(term.augmented.experiment, recordings);
@@ -103,8 +119,7 @@ MissingTerm describe(const RankedTerm& best, const std::vector<RankedTerm>& rank
       found.share,          found.log_evidence,      found.shifts};
   missing.share_of_all = 1.0 - found.chi_square / chi_square;
   for (const RankedTerm& one : ranked) {
-    if (&one != &best && one.finding.fitted &&
-        found.log_evidence - one.finding.log_evidence < kTiedEvidence) {
+    if (&one != &best && isTied(one, best)) {
       missing.rivals.push_back(one.finding.candidate.term);
     }
   }
@@ -188,8 +203,8 @@ ModelTest testTerms(const ExperimentSpec& experiment, const RecordedFeatures& re
   current = fitFrom(experiment, recordings, known.point);
   const RankedTerm* best =
       current.point.size() > 0 ? fitBest(current, recordings, scored, p, ranked) : nullptr;
-  if (best == nullptr || !(best->finding.log_evidence > kTiedEvidence) ||
-      !(best->finding.shifts.cwiseAbs().maxCoeff() > 1.0)) {
+  best = best != nullptr ? findMoving(*best, ranked) : nullptr;
+  if (best == nullptr) {
     return test;
   }
   MissingTerm missing = describe(*best, ranked, current.chi_square);
