@@ -12,6 +12,7 @@
 #include "framework/diagnosis/term_search.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/inference/joint/join_trials.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
@@ -94,22 +95,12 @@ class Diagnoser {
   }
 
  private:
-  /// Of a posterior whose search begins where a term was fitted.
-  SimulatorPosteriorOptions makeFittedOptions() const {
-    constexpr int kOwnStarts = 8;
-    SimulatorPosteriorOptions options = options_.posterior;
-    options.search.scouts = kOwnStarts;
-    options.search.starts = 2 * kOwnStarts;
-    options.search.max_batches = 1;
-    return options;
-  }
-
   /// The shared parameters over what was found and all that the recordings do not tell from it; of a
   /// posterior that is not reliable nothing is said.
   void average(const TermSearch& search, Diagnosis& diagnosis) const {
     std::vector<SimulatorPosterior> posteriors{diagnosis.after.posterior};
     std::vector<double> evidence{1.0};
-    SimulatorPosteriorOptions options = makeFittedOptions();
+    SimulatorPosteriorOptions options = searchNearby(options_.posterior);
     options.spares_misfit = true;
     const std::vector<AlternativeFit> none;
     for (const AlternativeFit& other :
@@ -136,7 +127,7 @@ class Diagnoser {
     diagnosis.after = diagnosis.before;
     while (diagnosis.found > 0) {
       const CurrentFit& last = fits[diagnosis.found];
-      diagnosis.after = explain(last.experiment, recordings_, last.point, makeFittedOptions());
+      diagnosis.after = explain(last.experiment, recordings_, last.point, searchNearby(options_.posterior));
       DiagnosisStep& step = diagnosis.steps[diagnosis.found - 1];
       if (!options_.accepted.empty() || diagnosis.after.isExplained() || holdsCautiously(step)) {
         break;
@@ -166,8 +157,8 @@ class Diagnoser {
     if (!coloured_.hasFaults()) {
       return;
     }
-    ExplainedFit fit =
-        explain(diagnosis.corrected, coloured_, diagnosis.after.posterior.best, makeFittedOptions());
+    ExplainedFit fit = explain(diagnosis.corrected, coloured_, diagnosis.after.posterior.best,
+                               searchNearby(options_.posterior));
     if (fit.isExplained() && fit.posterior.isReliable()) {
       diagnosis.after = std::move(fit);
       diagnosis.is_coloured = true;

@@ -10,6 +10,7 @@
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/term_ranking.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/inference/select_estimate.hpp"
@@ -175,8 +176,7 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
     return {};
   }
   std::optional<MissingTerm> missing = explainMisfit(current, recording, CandidateKinds::kWithoutStates);
-  constexpr double kMost = 0.9;  // of what is beyond noise, as of a clock's rival
-  if (!missing || missing->share < kMost) {
+  if (!missing || missing->share < kMostOfMisfit) {
     missing = explainMisfit(current, recording, CandidateKinds::kAll);
   }
   if (missing && hasUnknownNoise(experiment.noise)) {

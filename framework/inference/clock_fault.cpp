@@ -6,31 +6,27 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/estimation/significance.hpp"
 
 namespace twinmap {
 namespace {
 
-constexpr int kDigits = 3;
-
 std::string describeRate(const ClockFault& fault) {
-  constexpr double kPercent = 100.0;
   const double rate = fault.size / (1.0 - fault.size);  // stamps over true times, less 1
-  return fmt::format("the clock runs {} % {} (sd {} %)", toShortText(kPercent * std::abs(rate), kDigits),
-                     rate > 0.0 ? "fast" : "slow", toShortText(kPercent * fault.stddev, kDigits));
+  return fmt::format("the clock runs {} % {} (sd {} %)", toShortText(100.0 * std::abs(rate), kStddevDigits),
+                     rate > 0.0 ? "fast" : "slow", toShortText(100.0 * fault.stddev, kStddevDigits));
 }
 
 std::string describeLateness(const ClockFault& fault, bool is_further) {
-  constexpr double kMilli = 1e3;
-  constexpr int kTimeDigits = 6;
   const std::string from = fault.kind == ClockFaultKind::kSlip
-                               ? fmt::format("from t = {} s on ", toShortText(fault.from, kTimeDigits))
+                               ? fmt::format("from t = {} s on ", toShortText(fault.from, kEstimateDigits))
                                : "";
   const char* direction = is_further         ? (fault.size > 0.0 ? "later" : "earlier")
                           : fault.size > 0.0 ? "late"
                                              : "early";
   return fmt::format("{}{} {} ms {} (sd {} ms)", from, is_further ? "it is" : "the record is",
-                     toShortText(kMilli * std::abs(fault.size), kDigits), direction,
-                     toShortText(kMilli * fault.stddev, kDigits));
+                     toShortText(1e3 * std::abs(fault.size), kStddevDigits), direction,
+                     toShortText(1e3 * fault.stddev, kStddevDigits));
 }
 
 }  // namespace

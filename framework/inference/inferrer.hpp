@@ -80,6 +80,9 @@ struct InferredMeasurement {
   std::vector<std::string> unused{};   ///< parameters that nothing in the experiment depends on
   std::vector<Ridge> ridges{};         ///< of the simulator's posterior, where that alone was sampled
   std::optional<SegmentReport> segments{};
+  /// Of each parameter, the sd between the recordings it was inferred with, where these disagree by more than
+  /// their noise says; else empty.
+  std::vector<double> scatter{};
 
   /// Null of none.
   const MissingTerm* findMissing() const {

@@ -10,6 +10,7 @@
 #include "framework/estimation/derived/value_distribution.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -90,7 +91,6 @@ struct TestedResidual {
 /// Without the outliers, which are named.
 TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vector<FeatureInfo>& infos,
                            SimulatorFit& fit) {
-  constexpr int kDigits = 3;
   const VectorXd& residual = posterior.standardized.residual;
   TestedResidual tested{residual, infos, posterior.standardized.degrees};
   const bool has_weights = posterior.residual_weights.size() == residual.size();
@@ -106,7 +106,7 @@ TestedResidual takeInliers(const SimulatorPosterior& posterior, const std::vecto
     }
     if (has_weights && posterior.residual_weights[i] < kOutlierWeight) {
       fit.outliers.push_back(
-          fmt::format("{} ({} sd)", info.name, toShortText(std::abs(residual[i]), kDigits)));
+          fmt::format("{} ({} sd)", info.name, toShortText(std::abs(residual[i]), kStddevDigits)));
       fit.outlier_features.push_back(i);
       tested.degrees -= 1.0;
     } else {
@@ -152,8 +152,7 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
 }  // namespace
 
 bool NoiseReport::differs() const {
-  constexpr double kSignificant = 3.3;  // once in a thousand
-  return isStated() && found.size_was_inferred && std::abs(calcSizeDeviation(found)) > kSignificant;
+  return isStated() && found.size_was_inferred && std::abs(calcSizeDeviation(found)) > kOnceInAThousand;
 }
 
 bool SimulatorFit::isAsStated() const {

@@ -130,6 +130,31 @@ void addMissing(const InferredMeasurement& inferred, Statuses& statuses) {
   statuses.insert(statuses.begin(), "missing_term");
 }
 
+/// What recordings that disagree say of the machine is as wide as they scatter.
+void widen(const std::vector<double>& scatter, Estimate& estimate) {
+  if (scatter.empty() || !estimate.isGiven() || estimate.isMultimodal()) {
+    return;
+  }
+  const Eigen::VectorXd between =
+      Eigen::VectorXd::Map(scatter.data(), static_cast<Eigen::Index>(scatter.size()));
+  const Eigen::VectorXd wide = (estimate.stddev.cwiseAbs2() + between.cwiseAbs2()).cwiseSqrt();
+  const Eigen::VectorXd shares = estimate.stddev.cwiseQuotient(wide);
+  if (estimate.correlation.size() > 0) {
+    estimate.correlation = shares.asDiagonal() * estimate.correlation * shares.asDiagonal();
+    estimate.correlation.diagonal().setOnes();
+  }
+  estimate.stddev = wide;
+  estimate.draws = {};
+  estimate.mixture = estimate.ridge = {};
+  estimate.interval_factors = {};
+}
+
+void addDisagreement(const InferredMeasurement& inferred, Statuses& statuses) {
+  if (!inferred.scatter.empty()) {
+    statuses.insert(statuses.begin() + (isMismatch(statuses) ? 1 : 0), "trials_disagree");
+  }
+}
+
 }  // namespace
 
 Estimate selectEstimate(const InferredMeasurement& inferred) {
@@ -140,6 +165,7 @@ Estimate selectEstimate(const InferredMeasurement& inferred) {
   if (!estimate.isGiven()) {
     estimate.method = EstimationMethod::kPosterior;
   }
+  widen(inferred.scatter, estimate);
   if (inferred.prior && estimate.isGiven()) {
     estimate.prior_stddev = inferred.prior->stddev.head(estimate.mean.size());
   }
@@ -191,6 +217,7 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
     statuses.emplace_back(inferred.posterior->getStatus());
   }
   addMissing(inferred, statuses);
+  addDisagreement(inferred, statuses);
   if (statuses.empty() && (inferred.trust || posterior != nullptr)) {
     statuses.emplace_back(toString(TrustStatus::kOk));
   }

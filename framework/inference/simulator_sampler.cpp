@@ -9,6 +9,7 @@
 #include "framework/base/text/source_location.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/ridges/simulated_ridges.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {
@@ -21,13 +22,13 @@ namespace {
 
 /// Draws that stand for the posterior, each once at most: where the sum of the weights passes equal steps.
 std::vector<Index> chooseDraws(const VectorXd& weights) {
-  constexpr double kDraws = 32.0;
   std::vector<Index> chosen;
   double passed = 0.0;
   for (Index i = 0; i < weights.size(); ++i) {
     const double before = passed;
     passed += weights[i];
-    if (std::floor(passed * kDraws + 0.5) > std::floor(before * kDraws + 0.5)) {
+    if (std::floor(passed * static_cast<double>(kStandingDraws) + 0.5) >
+        std::floor(before * static_cast<double>(kStandingDraws) + 0.5)) {
       chosen.push_back(i);
     }
   }

@@ -4,6 +4,10 @@
 
 namespace twinmap {
 
+/// Significant digits of what people read: of an estimate, of another figure, of a standard deviation, and of
+/// a size that is known roughly.
+constexpr int kEstimateDigits = 6, kFigureDigits = 4, kStddevDigits = 3, kRoughDigits = 2;
+
 /// The shortest decimal text that reads back as the same number; "nan", "inf".
 std::string toText(double value);
 

@@ -6,8 +6,6 @@
 namespace twinmap {
 namespace {
 
-/// Of what is known of a body, a tenth is much.
-constexpr double kMuch = 0.1;
 constexpr const char* kAxes[] = {"x", "y", "z"};
 
 Expression addTo(const Expression& expression, const std::string& term) {
@@ -39,7 +37,7 @@ void addMoments(const BodySpec& body, std::size_t index, const ModelSizes& sizes
     addCorrection({key + "." + name,
                    fmt::format("another moment of inertia of {} about its {}, by c", name, axis),
                    "kg m2",
-                   kMuch * sizes.moments[index],
+                   kLargeShare * sizes.moments[index],
                    false,
                    {},
                    false,
@@ -64,7 +62,7 @@ void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
       {"mass." + name,
        fmt::format("another mass of {}, by c", name),
        "kg",
-       kMuch * sizes.masses[index],
+       kLargeShare * sizes.masses[index],
        false,
        {},
        false,
@@ -75,7 +73,7 @@ void addBody(const BodySpec& body, std::size_t index, const ModelSizes& sizes,
         {fmt::format("center_{}.{}", kAxes[axis], name),
          fmt::format("another centre of mass of {}, by c along its {}", name, kAxes[axis]),
          "m",
-         kMuch * sizes.lengths[index],
+         kLargeShare * sizes.lengths[index],
          false,
          {},
          false,

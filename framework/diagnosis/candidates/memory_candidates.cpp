@@ -87,7 +87,7 @@ void addHiddenMode(const ModelSpec& model, const CoordinateSizes& coordinate, do
                    std::vector<TermCandidate>& candidates) {
   // about the frequency at which the coordinate moves, in steps of a third: a mode is about as wide there
   // as it answers, and the fit finds the rest
-  constexpr double kFirst = 0.4, kFactor = 1.35, kRatio = 0.05, kLarge = 0.1;
+  constexpr double kFirst = 0.4, kFactor = 1.35, kRatio = 0.05;
   constexpr int kCount = 12;
   const std::string q = coordinate.name, v = q + "_dot";
   const std::string q0 = findInitial(model.initial.coordinates, q), v0 = findInitial(model.initial.speeds, q);
@@ -97,7 +97,7 @@ void addHiddenMode(const ModelSpec& model, const CoordinateSizes& coordinate, do
   candidate.meaning = fmt::format("a {} c that {} carries on a spring",
                                   coordinate.is_angle ? "moment of inertia" : "mass", q);
   candidate.unit = coordinate.is_angle ? "kg m2" : "kg";
-  candidate.size = kLarge * inertia;
+  candidate.size = kLargeShare * inertia;
   candidate.has_states = true;
   candidate.own_scales = {{"its frequency", "Hz", 0.0, 1.5}, {"its damping ratio", "1", kRatio, 10.0}};
   candidate.add = [q, v, q0, v0, length](ModelSpec& changed, const std::string& coefficient,

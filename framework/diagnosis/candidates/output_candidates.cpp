@@ -8,8 +8,6 @@
 namespace twinmap {
 namespace {
 
-constexpr double kLargeGain = 0.1;
-
 /// An output as an expression, and its rate; "" where it has none.
 struct OutputText {
   std::string value, rate, second_rate;
@@ -50,7 +48,7 @@ void addGainAndOffset(std::size_t index, const std::string& name, const std::str
   offset.term = "offset." + name;
   offset.meaning = fmt::format("offset c of output {}", name);
   offset.unit = unit;
-  offset.size = kLargeGain * size;
+  offset.size = kLargeShare * size;
   offset.add = [index](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
     Expression& text = changed.outputs[index].offset;
     text.text = text.text.empty() ? coefficient : "(" + text.text + ") + " + coefficient;
@@ -58,7 +56,7 @@ void addGainAndOffset(std::size_t index, const std::string& name, const std::str
   TermCandidate gain;
   gain.term = "gain." + name;
   gain.meaning = fmt::format("gain of output {}, larger by the factor 1 + c", name);
-  gain.size = kLargeGain;
+  gain.size = kLargeShare;
   gain.add = [index](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
     Expression& text = changed.outputs[index].gain;
     text.text = (text.text.empty() ? "1" : "(" + text.text + ")*1") + ("*(1 + " + coefficient + ")");
@@ -155,7 +153,7 @@ void addCrossTalk(const ModelSpec& model, const std::vector<OutputText>& texts,
         const std::string &into = model.outputs[to].name.text, &of = model.outputs[from].name.text;
         candidates.push_back(makeAdded(to, fmt::format("cross_talk.{}.{}", into, of),
                                        fmt::format("cross-talk: c times output {} in output {}", of, into),
-                                       "1", kLargeGain, texts[from].value));
+                                       "1", kLargeShare, texts[from].value));
       }
     }
   }
@@ -164,11 +162,10 @@ void addCrossTalk(const ModelSpec& model, const std::vector<OutputText>& texts,
 /// Drift, clipping, delay and lag of an output that is a coordinate, a speed or an expression.
 void addOwnErrors(std::size_t index, const ModelSpec& model, const OutputText& text, const Extent& extent,
                   std::vector<TermCandidate>& candidates) {
-  constexpr double kLongDelay = 0.005, kShortestLag = 0.002;  // of the duration
   const std::string& name = model.outputs[index].name.text;
   const double duration = model.simulation.duration;
   candidates.push_back(makeAdded(index, "drift." + name, fmt::format("drift of output {}, c t", name),
-                                 makeRateUnit(text.unit), kLargeGain * extent.largest / duration, "t"));
+                                 makeRateUnit(text.unit), kLargeShare * extent.largest / duration, "t"));
   addClipping(index, name, text, extent, candidates);
   // of one output alone, a delay is that of all signals
   if (!text.rate.empty() && (model.outputs.size() > 1 || model.excitation.empty())) {

@@ -13,8 +13,6 @@
 namespace twinmap {
 namespace {
 
-constexpr double kLarge = 0.1;
-
 /// Puts `replacement` in the place of a signal, wherever forces, states and named expressions use it.
 void replaceSignal(ModelSpec& model, const std::string& signal, const std::string& replacement) {
   const auto replace = [&](Expression& expression) {
@@ -128,7 +126,7 @@ TermCandidate makeGain(const std::string& name) {
   TermCandidate gain;
   gain.term = "gain." + name;
   gain.meaning = fmt::format("signal {}, larger by the factor 1 + c", name);
-  gain.size = kLarge;
+  gain.size = kLargeShare;
   gain.add = [name](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
     addToSignal(changed, name, coefficient + "*" + name);
   };
@@ -248,7 +246,6 @@ void scaleSignals(ModelSpec& model, double factor) {
 }
 
 std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model, const ModelSizes& sizes) {
-  constexpr double kLongDelay = 0.005, kShortestLag = 0.002;  // of the duration
   const double duration = model.simulation.duration;
   std::vector<TermCandidate> candidates;
   for (std::size_t i = 0; i < model.excitation.size(); ++i) {

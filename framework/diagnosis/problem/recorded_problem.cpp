@@ -11,6 +11,7 @@
 #include "framework/data/measurement/measured_signals.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/estimation/posterior/basins/search_team.hpp"
+#include "framework/estimation/posterior/problem_surface.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/joint/join_trials.hpp"
 #include "framework/inference/measurement/supposed_input.hpp"
@@ -365,26 +366,17 @@ LinearizedRecordings RecordingsProblem::linearize(const VectorXd& point) const {
 }
 
 RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
-  const LogCoordinates coordinates(getUnknown());
-  const Prior prior(getUnknown(), problem_.priors);
-  std::vector<std::unique_ptr<TrialMisfit>> own;
-  std::vector<MeasuredPart> parts;
-  for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
-    const MeasuredTrial& trial = problem_.trials[k];
-    own.push_back(std::make_unique<TrialMisfit>(trial));
-    parts.push_back({&own.back()->misfit, trial.model, trial.unknown, makeLosses(faults_[k], *trial.model)});
+  PosteriorProblem problem = problem_;
+  for (std::size_t k = 0; k < problem.trials.size(); ++k) {
+    problem.trials[k].noise = faults_[k];
   }
-  MisfitSurface surface(std::move(parts), coordinates, prior);
-  MatrixXd from(starts.rows(), starts.cols());
-  for (Index i = 0; i < starts.cols(); ++i) {
-    from.col(i) = coordinates.fromParameters(starts.col(i));
-  }
-  SearchTeam team(surface, from);
+  ProblemSurface whole(problem);
+  SearchTeam team(whole.upd(), toCoordinates(whole.getCoordinates(), starts));
   team.run(BasinSearchOptions{}.max_iterations);
   RecordingFit best;
   for (const LocalSurface& end : team.listEnds()) {
     if (best.point.size() == 0 || end.chi_square < best.chi_square) {
-      best = {coordinates.toParameters(end.at), end.chi_square};
+      best = {whole.getCoordinates().toParameters(end.at), end.chi_square};
     }
   }
   return best;

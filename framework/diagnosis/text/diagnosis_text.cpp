@@ -18,8 +18,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kFigureDigits = 4, kStddevFigures = 2, kEstimateDigits = 6;
-
 /// "; speed at which friction sets in s = 0.01 m/s"
 std::string describeOwnScales(const TermCandidate& candidate) {
   std::string text;
@@ -45,14 +43,14 @@ std::string describeShifts(const VectorXd& shifts, const std::vector<ParameterSp
 /// An estimate and its standard deviation, as cells.
 void addEstimate(const VectorXd& mean, const VectorXd& stddev, Index i, std::vector<std::string>& row) {
   row.push_back(i < mean.size() ? toShortText(mean[i], kEstimateDigits) : "-");
-  row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevFigures + 1) : "-");
+  row.push_back(i < mean.size() ? toShortText(stddev[i], kStddevDigits) : "-");
 }
 
 /// "a force on x of sd 0.03 N, which changes within 0.1 s (log evidence 57.0)"
 std::string describeSize(const Remainder& remainder) {
   return fmt::format("{} of sd {} {}, which changes within {} s (log evidence {:.1f}){}", remainder.what,
-                     toShortText(remainder.stddev, kStddevFigures), remainder.unit,
-                     toShortText(remainder.correlation_time, kStddevFigures), remainder.log_evidence,
+                     toShortText(remainder.stddev, kRoughDigits), remainder.unit,
+                     toShortText(remainder.correlation_time, kRoughDigits), remainder.log_evidence,
                      remainder.rivals.empty()
                          ? ""
                          : fmt::format(", or as {}: these recordings do not tell them apart",
@@ -141,9 +139,9 @@ TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec
   for (std::size_t i = 0; i < shown; ++i) {
     const TermFinding& one = step.ranked[i];
     rows.push_back({one.candidate.term, toShortText(one.estimate, kFigureDigits),
-                    toShortText(one.stddev, kStddevFigures), one.candidate.unit,
-                    fmt::format("{:+.1f}", one.z), fmt::format("{:.0f} %", 100.0 * one.share),
-                    fmt::format("{:.1f}", one.log_evidence), describeShifts(one.shifts, parameters)});
+                    toShortText(one.stddev, kRoughDigits), one.candidate.unit, fmt::format("{:+.1f}", one.z),
+                    fmt::format("{:.0f} %", 100.0 * one.share), fmt::format("{:.1f}", one.log_evidence),
+                    describeShifts(one.shifts, parameters)});
   }
   return rows;
 }
@@ -188,7 +186,7 @@ std::string describeStep(const DiagnosisStep& step, std::size_t number, double l
       text += fmt::format("  and with it: {}\n  {}{}\n  size {} {} (sd {})\n", step.partner->candidate.term,
                           step.partner->candidate.meaning, describeOwnScales(step.partner->candidate),
                           toShortText(step.partner->estimate, kFigureDigits), step.partner->candidate.unit,
-                          toShortText(step.partner->stddev, kStddevFigures));
+                          toShortText(step.partner->stddev, kRoughDigits));
     }
     for (const std::string& term : step.dropped) {
       text += fmt::format("  superfluous now: {}\n", term);

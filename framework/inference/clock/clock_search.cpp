@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "framework/estimation/posterior/noise/residual_test.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_fit.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -16,8 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kSignificant = 3.3;  // standard deviations: once in a thousand
 
 /// Where a slip would take most of the misfit away.
 struct SlipPlace {
@@ -131,10 +130,10 @@ class ClockSearch {
 
   /// With one slip more, at the best place; not given where none is worth it.
   ClockedFit addSlip(const ClockedFit& fit) const {
-    constexpr double kOdds = 1e3, kFewestSamples = 20.0, kMost = 40.0;
+    constexpr double kOdds = 1e3, kMost = 40.0;
     const auto n = static_cast<double>(fit.residual.size());
     if (!fit.isGiven() || !recorded_.experiment.noise.correlation.empty() ||
-        static_cast<double>(fit.faults.size()) >= std::min(kMost, n / kFewestSamples)) {
+        static_cast<double>(fit.faults.size()) >= std::min(kMost, n / static_cast<double>(kFewestTested))) {
       return {};
     }
     std::vector<ClockFault> faults = fit.faults;
@@ -219,7 +218,7 @@ std::optional<ClockedMeasurement> findClockFaults(const RecordedSamples& recorde
     fault.size = draws.weights.dot(own) / draws.weights.sum();
     fault.stddev =
         std::sqrt(draws.weights.dot((own.array() - fault.size).square().matrix()) / draws.weights.sum());
-    if (std::abs(fault.size) < kSignificant * fault.stddev) {
+    if (std::abs(fault.size) < kOnceInAThousand * fault.stddev) {
       return std::nullopt;
     }
   }

@@ -7,6 +7,7 @@
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/estimation/posterior/agreement.hpp"
 #include "framework/estimation/ridges/simulated_ridges.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/inference/derived_values.hpp"
 
 namespace twinmap {
@@ -22,7 +23,6 @@ namespace {
 /// is too narrow for ridges.
 MatrixXd listRidgePoints(const PosteriorProblem& problem, const PosteriorEstimate& posterior,
                          const SimulatorPosterior& joint, const std::vector<ParameterSpec>& parameters) {
-  constexpr Index kDraws = 32;
   if (!joint.isReliable()) {
     return joint.places;
   }
@@ -31,9 +31,9 @@ MatrixXd listRidgePoints(const PosteriorProblem& problem, const PosteriorEstimat
   if (!may_have) {
     return {};
   }
-  MatrixXd points = joint.best.replicate(1, 1 + kDraws);
-  points.topRightCorner(joint.draws.rows(), kDraws) =
-      joint.resample(VectorXd::LinSpaced(kDraws, 0.5 / kDraws, 1.0 - 0.5 / kDraws));
+  MatrixXd points = joint.best.replicate(1, 1 + kStandingDraws);
+  points.topRightCorner(joint.draws.rows(), kStandingDraws) =
+      joint.resample(VectorXd::LinSpaced(kStandingDraws, 0.5 / kStandingDraws, 1.0 - 0.5 / kStandingDraws));
   return points;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -32,8 +33,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The joint search begins where the recordings alone ended; so few starts of its own suffice.
-constexpr int kOwnStarts = 8;
 /// Of a recording alone, where there are many parameters and each simulation is dear. Their means and
 /// standard deviations are then known to a tenth of one. That is enough to show what each recording adds. So
 /// is a linear response about its best fit where that does (sampleLinearModel), unless a number of draws is
@@ -184,16 +183,24 @@ void requireSameParameters(const std::vector<ParameterSpec>& parameters,
 
 ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs) {
   const auto degrees = static_cast<double>(values.size() - 1);
-  const VectorXd precise = stddevs.cwiseAbs2().cwiseInverse();
-  const double precise_mean = precise.dot(values) / precise.sum();
-  const double excess =
-      precise.dot((values.array() - precise_mean).square().matrix()) - degrees;  // of Cochran's Q
-  const double variance = std::max(0.0, excess / (precise.sum() - precise.squaredNorm() / precise.sum()));
-  const VectorXd weights = (stddevs.array().square() + variance).inverse();
   ScatterEstimate estimate;
-  estimate.scatter = std::sqrt(variance);
-  estimate.mean = weights.dot(values) / weights.sum();
-  const double spread = weights.dot((values.array() - estimate.mean).square().matrix()) / degrees;
+  VectorXd weights;
+  const auto calcSpread = [&](double variance) {  // about the weighted mean: Cochran's Q
+    weights = (stddevs.array().square() + variance).inverse();
+    estimate.mean = weights.dot(values) / weights.sum();
+    return weights.dot((values.array() - estimate.mean).square().matrix());
+  };
+  const double stated = calcSpread(0.0);
+  estimate.ratio = std::sqrt(stated / degrees);
+  if (stated > degrees) {
+    const auto excess = [&](double variance) { return calcSpread(variance) - degrees; };
+    const double all = (values.array() - values.mean()).square().sum();
+    constexpr int kBits = 30;
+    const auto [low, high] =
+        boost::math::tools::bisect(excess, 0.0, all, boost::math::tools::eps_tolerance<double>(kBits));
+    estimate.scatter = std::sqrt(0.5 * (low + high));
+  }
+  const double spread = calcSpread(estimate.scatter * estimate.scatter) / degrees;
   // never narrower than the stated standard deviations allow (Röver, Knapp and Friede 2015)
   estimate.stddev = std::sqrt(std::max(1.0, spread) / weights.sum());
   const boost::math::students_t_distribution<> few(degrees);
@@ -279,9 +286,8 @@ JointInferrer::JointInferrer(std::vector<TrialExperiment> trials, const std::vec
                            draws.value_or(has_many ? kDrawsOfMany : SimulatorPosteriorOptions{}.draws));
   options_.draws = has_many ? std::min(joint_options_.draws, kDrawsAlone) : joint_options_.draws;
   options_.is_linear = has_many && !draws;
-  joint_options_.search.scouts = has_many ? 0 : kOwnStarts;
-  joint_options_.search.starts = 2 * kOwnStarts;
-  joint_options_.search.max_batches = 1;
+  joint_options_ = searchNearby(joint_options_);
+  joint_options_.search.scouts = has_many ? 0 : joint_options_.search.scouts;
 }
 
 const std::vector<ParameterSpec>& JointInferrer::getParameters() const {
@@ -384,8 +390,11 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   leaveClockBounds(problem, alone, inferred.together.posterior->fit->beyond);
   inferred.contradictions = findContradictions(inferred.alone, shared);
   nameNoise(alone, inferred);
-  if (inferred.disagrees()) {
-    inferred.scatter = combineRecordings(inferred.alone, shared);
+  inferred.scatter = combineRecordings(inferred.alone, shared);
+  for (RecordingInference& one : inferred.alone) {
+    for (std::size_t p = 0; p < inferred.scatter.size() && inferred.disagrees(); ++p) {
+      one.inferred.scatter.push_back(inferred.scatter[p].scatter);
+    }
   }
   return inferred;
 }

@@ -32,6 +32,7 @@ struct ScatterEstimate {
   double mean = 0.0, stddev = 0.0;
   IntervalFactor factor{};  ///< of a Student distribution, as recordings are few
   double scatter = 0.0;     ///< standard deviation between recordings that their own does not explain
+  double ratio = 0.0;       ///< of their scatter to that which their own explains: about 1 where they agree
 };
 
 /// A recording by itself.
@@ -48,7 +49,7 @@ struct JointInference {
   InferredMeasurement together{};             ///< the same as an answer of one (describeTogether)
   std::optional<Agreement> agreement;         ///< where all could be simulated
   std::vector<Contradiction> contradictions;  ///< the largest of each parameter, the largest first
-  std::vector<ScatterEstimate> scatter;       ///< of each parameter; empty unless they disagree
+  std::vector<ScatterEstimate> scatter;  ///< of each parameter; empty of fewer than two that are reliable
   int simulations = 0;
   Asked asked{};                          ///< what the user asked for
   std::optional<ModelTest> model_test{};  ///< of all recordings together, where the model is known
@@ -71,7 +72,8 @@ std::vector<std::string> listRecordingFaults(const std::vector<RecordingInferenc
 std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
 
 /// The mean of values with standard deviations that scatter more than these say: variance between them by
-/// DerSimonian and Laird (1986), interval by Hartung and Knapp (2001), which holds for few values as well.
+/// Paule and Mandel (1982), which holds where standard deviations differ by orders of magnitude, interval by
+/// Hartung and Knapp (2001), which holds for few values as well.
 /// At least two values; stddevs above 0.
 ScatterEstimate combineScattered(const Eigen::VectorXd& values, const Eigen::VectorXd& stddevs);
 

@@ -6,6 +6,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/measurement/alternation.hpp"
 #include "framework/inference/measurement/gram_masses.hpp"
@@ -40,12 +41,11 @@ std::vector<std::string> listMeasured(const ModelSpec& model) {
 std::optional<ClockedMeasurement> findClock(const RecordingSetup& setup, const AvailableFeatures& found,
                                             const VectorXd& known, const SimulatorPosteriorOptions& options,
                                             const InferredMeasurement& inferred) {
-  constexpr Index kFewest = 20;  // samples, of which a clock can be told
   const ExperimentSpec& experiment = setup.reader->getExperiment();
   const SimulatorFit* fit = findFit(inferred);
   if (!isMismatch(listStatuses(inferred)) || fit == nullptr || found.stated.isGiven() ||
       experiment.model.source || !areSamples(experiment.features) || !setup.simulator->samplesFast() ||
-      static_cast<Index>(found.available.size()) < kFewest) {
+      static_cast<Index>(found.available.size()) < kFewestTested) {
     return std::nullopt;
   }
   const SearchStage stage("does a fault of the clock explain it");
@@ -109,7 +109,6 @@ class Explaining {
   }
 
   void tryWithoutSpikes() {
-    constexpr double kLess = 0.5;
     if (!isUnexplained()) {
       return;
     }
@@ -127,7 +126,7 @@ class Explaining {
     }
     SampledMeasurement other = sample(without);
     SimulatorFit& own = *other.estimate.fit;
-    if (own.isSimulated() && (own.isPlausible() || own.chi_square < kLess * getFit().chi_square)) {
+    if (own.isSimulated() && (own.isPlausible() || own.chi_square < kClearlyLess * getFit().chi_square)) {
       own.outliers.insert(own.outliers.end(), spiked.said.begin(), spiked.said.end());
       own.outlier_features.insert(own.outlier_features.end(), spiked.features.begin(), spiked.features.end());
       take(std::move(other));

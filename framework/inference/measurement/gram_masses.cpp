@@ -2,16 +2,16 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/estimation/significance.hpp"
 
 namespace twinmap {
 
 std::string explainByGrams(const MeasurementReader& reader, const SimulatorRefiner& simulator,
                            const AvailableFeatures& found, const Eigen::VectorXd& known,
                            const SimulatorFit& fit) {
-  constexpr double kGross = 100.0, kLeft = 0.01;  // of the misfit: as faults of a recording are told
   const ExperimentSpec& experiment = reader.getExperiment();
   const std::vector<BodySpec>& bodies = experiment.model.system.bodies;
-  if (experiment.model.source || !simulator.samplesFast() || fit.chi_square < kGross * fit.degrees) {
+  if (experiment.model.source || !simulator.samplesFast() || fit.chi_square < kGrossMisfit * fit.degrees) {
     return "";
   }
   std::vector<std::vector<std::size_t>> tried;  // bodies whose masses may be in g
@@ -36,7 +36,7 @@ std::string explainByGrams(const MeasurementReader& reader, const SimulatorRefin
     }
     const SimulatorRefiner refiner(light, reader.getLayout());
     if (refiner.findLeastChiSquare(found.features, known, static_cast<Eigen::Index>(found.available.size())) <
-        kLeft * fit.chi_square) {
+        kRestOfGross * fit.chi_square) {
       return "the mass of " + names +
              " is 1000 times too large, as g in the place of kg (that explains 99 % of the misfit)";
     }

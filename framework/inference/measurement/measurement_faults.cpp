@@ -10,6 +10,8 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
+#include "framework/estimation/significance.hpp"
+#include "framework/inference/measurement/spikes.hpp"
 #include "framework/inference/measurement/wrap_modulus.hpp"
 
 namespace twinmap {
@@ -18,8 +20,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kClearlyLess = 0.5;  // of the chi-square of a zero
-constexpr Index kFewestEqual = 4;     // of numbers with noise no two are the same
+constexpr Index kFewestEqual = 4;  // of numbers with noise no two are the same
 
 /// `example` is given where the output's unit contains `unit`.
 struct UnitFactor {
@@ -97,55 +98,21 @@ class Search {
   std::string said_;
 };
 
-struct Spike {
-  Index sample = 0;
-  double height = 0.0;  ///< above the cubic through the four neighbours
-};
-
-/// The sample of evenly spaced ones that is farthest off the cubic through its neighbours. Its height is 0 if
-/// none stands out. Noise and curvature put half of the samples off. A spike that makes a gross misfit is far
-/// above both.
-Spike findSpike(const Eigen::Ref<const VectorXd>& samples) {
-  constexpr double kStandsOut = 6.0;  // of 1000 normal numbers the largest is 5 times the median
-  Spike spike;
-  std::vector<double> heights;
-  for (Index i = 2; i + 2 < samples.size(); ++i) {
-    const double cubic = (4.0 * (samples[i - 1] + samples[i + 1]) - samples[i - 2] - samples[i + 2]) / 6.0;
-    const double height = samples[i] - cubic;
-    if (std::isfinite(height)) {
-      heights.push_back(std::abs(height));
-      spike = std::abs(height) > std::abs(spike.height) ? Spike{i, height} : spike;
-    }
-  }
-  if (heights.empty()) {
-    return spike;
-  }
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return std::abs(spike.height) > kStandsOut * *middle ? spike : Spike{};
-}
-
-/// One to three samples of an output that alone are wrong.
-void trySpikes(const VectorXd& measured, const ResponseLayout& layout, Index output,
-               const MisfitOfResponse& calcMisfit, Search& search) {
-  constexpr int kMost = 3;
-  constexpr double kStep = 0.1;  // of the height, which the cubic overestimates little
+/// Samples of an output that alone are wrong, the highest first.
+void trySpikes(const VectorXd& measured, const ResponseLayout& layout, Index output, Search& search) {
   const Index times = layout.times.size(), first = layout.getRow(output, 0);
-  VectorXd corrected = measured;
+  VectorXd without = measured;
   std::string places;
-  for (int i = 0; i < kMost; ++i) {
-    const auto [sample, height] = findSpike(corrected.segment(first, times));
-    if (height == 0.0) {
-      return;
+  for (const SpikedSample& spike : findSpikes(measured, layout)) {
+    if (spike.row < first || spike.row >= first + times) {
+      continue;
     }
-    const VectorXd one = VectorXd::Ones(1);
-    const double offset =
-        findAmount(corrected, first + sample, one, height, kStep * std::abs(height), calcMisfit);
-    corrected = subtract(corrected, first + sample, one, offset);
-    places += fmt::format("{}{:.4g} s", places.empty() ? "" : ", ", layout.times[sample]);
-    if (search.tryOut(corrected, fmt::format("{} has {} at {}: repair the recording, or empty the cell{}",
-                                             layout.output_names[static_cast<std::size_t>(output)],
-                                             i == 0 ? "a spike" : "spikes", places, i == 0 ? "" : "s"))) {
+    const bool is_one = places.empty();
+    without[spike.row] = std::numeric_limits<double>::quiet_NaN();
+    places += fmt::format("{}{:.4g} s", is_one ? "" : ", ", layout.times[spike.row - first]);
+    if (search.tryOut(without, fmt::format("{} has {} at {}: repair the recording, or empty the cell{}",
+                                           layout.output_names[static_cast<std::size_t>(output)],
+                                           is_one ? "a spike" : "spikes", places, is_one ? "" : "s"))) {
       return;
     }
   }
@@ -333,13 +300,10 @@ void tryUnits(const VectorXd& measured, const ResponseLayout& layout, Index outp
 std::string explainByFault(const VectorXd& measured, const ResponseLayout& layout, double chi_square,
                            Index residuals, const MisfitOfResponse& calcMisfit,
                            const std::vector<std::string>& signals) {
-  constexpr double kGross =
-      100.0;  // chi-square a residual: sensors and units do that, missing physics rarely
-  constexpr double kLeft = 0.01;
-  if (!(chi_square > kGross * static_cast<double>(residuals)) || layout.times.size() == 0) {
+  if (!(chi_square > kGrossMisfit * static_cast<double>(residuals)) || layout.times.size() == 0) {
     return "";
   }
-  Search search(kLeft * chi_square, calcMisfit);
+  Search search(kRestOfGross * chi_square, calcMisfit);
   const Index times = layout.times.size();
   if (layout.getOutputCount() > 1) {
     search.tryOut(-measured, "all outputs are of the other sign: turn their signs");
@@ -350,7 +314,7 @@ std::string explainByFault(const VectorXd& measured, const ResponseLayout& layou
     const Index first = layout.getRow(output, 0);
     tryWrap(measured, layout, output, search);
     tryUnits(measured, layout, output, calcMisfit, search);
-    trySpikes(measured, layout, output, calcMisfit, search);
+    trySpikes(measured, layout, output, search);
     tryStandstill(measured, layout, output, search);
     tryDrift(measured, layout, output, calcMisfit, search);
     for (Index other = 0; other < output; ++other) {

@@ -45,7 +45,6 @@ double calcMedianSize(const VectorXd& heights) {
 /// Of one output; rows count from its first.
 std::vector<SpikedSample> findSpikesOf(VectorXd samples) {
   constexpr double kStandsOut = 10.0;
-  constexpr Index kShare = 50;
   std::vector<SpikedSample> spikes;
   const double least = kStandsOut * calcMedianSize(calcHeights(samples));
   for (Index i = 0; i < samples.size() && least > 0.0; ++i) {
@@ -54,7 +53,7 @@ std::vector<SpikedSample> findSpikesOf(VectorXd samples) {
     if (heights.cwiseAbs().maxCoeff(&at) <= least) {
       break;
     }
-    if (static_cast<Index>(spikes.size()) * kShare >= samples.size()) {
+    if (static_cast<Index>(spikes.size()) >= std::max<Index>(3, samples.size() / 50)) {
       return {};
     }
     const auto known = std::find_if(spikes.begin(), spikes.end(),

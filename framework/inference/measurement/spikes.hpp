@@ -17,8 +17,8 @@ struct SpikedSample {
 
 /// The spikes of a measured response (rows of the layout, NaN where missing), of evenly spaced samples, the
 /// highest of each output first: heights of more than ten times the median one, which of normal noise is none
-/// in a billion. None of an output where they are more than a fiftieth of its samples: that is what it
-/// measures. O(samples * spikes).
+/// in a billion. None of an output where they are more than three and more than a fiftieth of its
+/// samples: that is what it measures. O(samples * spikes).
 std::vector<SpikedSample> findSpikes(const Eigen::VectorXd& measured, const ResponseLayout& layout);
 
 /// The features that are these samples (their numbers), their rows, and what is said of each, "x(1.6 s) (off

@@ -14,8 +14,6 @@
 namespace twinmap {
 namespace {
 
-constexpr int kDigits = 6;
-
 /// The samples of all features, which have one interval.
 const SamplesFeatureSpec& getSamples(const ExperimentSpec& experiment) {
   const SamplesFeatureSpec* first = nullptr;
@@ -27,8 +25,8 @@ const SamplesFeatureSpec& getSamples(const ExperimentSpec& experiment) {
     first = first == nullptr ? samples : first;
     if (samples->interval != first->interval) {
       throw ExperimentError("in segments all outputs are sampled at one interval; here " +
-                            toShortText(first->interval, kDigits) + " s and " +
-                            toShortText(samples->interval, kDigits) + " s");
+                            toShortText(first->interval, kEstimateDigits) + " s and " +
+                            toShortText(samples->interval, kEstimateDigits) + " s");
     }
   }
   return *first;
@@ -50,8 +48,8 @@ void requireSamples(const ExperimentSpec& experiment, const SegmentGrid& grid) {
     throw ExperimentError(fmt::format(
         "a segment of {} s has {} samples of {} outputs, which do not determine its {} initial states and "
         "anything beside; give segments of {} s or more",
-        toShortText(grid.getLength(), kDigits), grid.samples, outputs, states,
-        toShortText(enough * grid.interval, kDigits)));
+        toShortText(grid.getLength(), kEstimateDigits), grid.samples, outputs, states,
+        toShortText(enough * grid.interval, kEstimateDigits)));
   }
 }
 
@@ -116,7 +114,8 @@ SegmentGrid makeSegmentGrid(const ExperimentSpec& experiment, double length, dou
   grid.count = static_cast<int>(std::max(0.0, there) / grid.samples);
   if (grid.count < 1) {
     throw ExperimentError(fmt::format("the recording ends {} s behind its start, before a segment of {} s",
-                                      toShortText(end, kDigits), toShortText(grid.getLength(), kDigits)));
+                                      toShortText(end, kEstimateDigits),
+                                      toShortText(grid.getLength(), kEstimateDigits)));
   }
   return grid;
 }

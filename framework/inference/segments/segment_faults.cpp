@@ -9,6 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/noise/noise_estimate.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/inference/measurement/spikes.hpp"
 
 namespace twinmap {
@@ -98,14 +99,13 @@ std::optional<SupposedSegments> leaveSpikes(const SupposedSegments& from, const 
 }
 
 std::vector<SupposedSegments> supposeNoise(const SupposedSegments& from, const SegmentResidual& fitted) {
-  constexpr int kMaxOrder = 3;   // as fitColours()
-  constexpr Index kFewest = 20;  // as whiteness is tested of
+  constexpr int kMaxOrder = 3;  // as fitColours()
   SupposedSegments sizes = from, offsets = from, colours = from;
   for (int output = 0; output < static_cast<int>(fitted.layout.output_names.size()); ++output) {
     const std::string& name = fitted.layout.output_names[static_cast<std::size_t>(output)];
     const VectorXd residual = takeOutput(fitted, output);
     OutputNoiseSpec* own = findNoise(name, sizes.experiment.noise);
-    if (own == nullptr || residual.size() < kFewest || !(residual.squaredNorm() > 0.0)) {
+    if (own == nullptr || residual.size() < kFewestTested || !(residual.squaredNorm() > 0.0)) {
       continue;
     }
     NoiseReport report = makeReport(fitted, output, *own, from.experiment.noise.scale, residual);
@@ -136,7 +136,6 @@ std::vector<SupposedSegments> supposeNoise(const SupposedSegments& from, const S
 }
 
 bool takeOffsets(PosteriorEstimate& estimate, SupposedSegments& supposed) {
-  constexpr double kSignificant = 3.3;  // once in a thousand, as listNoiseHypotheses()
   const BoundedDraws& draws = estimate.estimate.draws;
   const auto p = static_cast<std::size_t>(estimate.estimate.mean.size());
   for (NoiseReport& report : supposed.noise) {
@@ -149,8 +148,8 @@ bool takeOffsets(PosteriorEstimate& estimate, SupposedSegments& supposed) {
             std::sqrt(draws.weights.dot((own.array() - mean).square().matrix()) / sum);
       }
     }
-    report.found.has_offset =
-        report.found.has_offset && std::abs(report.found.offset) > kSignificant * report.found.offset_stddev;
+    report.found.has_offset = report.found.has_offset &&
+                              std::abs(report.found.offset) > kOnceInAThousand * report.found.offset_stddev;
   }
   std::vector<ParameterSpec>& nuisance = estimate.nuisance;  // offsets are the last
   nuisance.erase(

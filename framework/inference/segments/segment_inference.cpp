@@ -13,6 +13,7 @@
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/estimation/segments/segmented_misfit.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
@@ -271,7 +272,6 @@ class SegmentExplaining {
 
   /// As it is stated or, where that does not explain it, without spikes or under other noise.
   SegmentFit explain(SupposedSegments read) const {
-    constexpr double kLess = 0.5;  // of the misfit, as of other recordings (explainRecording)
     SegmentFit fit = fitAs(std::move(read));
     const auto is_unexplained = [&] {
       return fit.estimate.fit->isSimulated() && !fit.estimate.fit->isPlausible();
@@ -282,7 +282,7 @@ class SegmentExplaining {
     const ResponseLayout& layout = fit.prepared.simulator->getLayout();
     if (auto without = leaveSpikes(fit.supposed, layout, fit.prepared.recording->starts)) {
       SegmentFit other = fitAs(std::move(*without));
-      if (other.estimate.fit->chi_square < kLess * fit.estimate.fit->chi_square) {
+      if (other.estimate.fit->chi_square < kClearlyLess * fit.estimate.fit->chi_square) {
         fit = std::move(other);
       }
     }

@@ -25,19 +25,17 @@ using Row = std::vector<std::string>;
 constexpr const char* kIndent = "  ";
 
 std::string describeIntervals(const Intervals& intervals) {
-  constexpr int kDigits = 6;
   std::string text;
   for (const auto& [lower, upper] : intervals) {
-    text += fmt::format("{}{} .. {}", text.empty() ? "" : ", ", toShortText(lower, kDigits),
-                        toShortText(upper, kDigits));
+    text += fmt::format("{}{} .. {}", text.empty() ? "" : ", ", toShortText(lower, kEstimateDigits),
+                        toShortText(upper, kEstimateDigits));
   }
   return text;
 }
 
 Row makeRow(const ParameterSpec& parameter, double mean, double stddev, const Intervals& intervals95) {
-  constexpr int kDigits = 6, kStddevDigits = 3;
-  return {parameter.name.text, parameter.unit, toShortText(mean, kDigits), toShortText(stddev, kStddevDigits),
-          describeIntervals(intervals95)};
+  return {parameter.name.text, parameter.unit, toShortText(mean, kEstimateDigits),
+          toShortText(stddev, kStddevDigits), describeIntervals(intervals95)};
 }
 
 std::string makeTable(std::vector<Row> rows) {
@@ -108,7 +106,6 @@ std::string describeRefined(const Refined& refined) {
 /// The components of a mixture, with what would tell them apart where nothing else comes first.
 std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters,
                             bool misfits) {
-  constexpr int kDigits = 5, kStddevDigits = 3;
   constexpr double kMin = 0.01;  // a lighter one is not worth a line
   std::string text = "  multimodal, several parameter values may fit:\n";
   for (Index c = 0; c < mixture.countComponents(); ++c) {
@@ -116,7 +113,7 @@ std::string describeMixture(const Mixture& mixture, const std::vector<ParameterS
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Index>(p);
       values += fmt::format("{}{} = {} +- {}", p == 0 ? "" : ", ", parameters[p].name.text,
-                            toShortText(mixture.means(i, c), kDigits),
+                            toShortText(mixture.means(i, c), kEstimateDigits),
                             toShortText(mixture.stddevs(i, c), kStddevDigits));
     }
     if (mixture.weights[c] > kMin) {
@@ -194,25 +191,23 @@ std::string describePosterior(const InferredMeasurement& inferred, const Estimat
 
 /// misfits: whether they are not explained, not by a fault of the recording either.
 std::string describeSegments(const SegmentReport& segments, bool misfits) {
-  constexpr int kDigits = 4;
   std::string text =
       fmt::format("  {} segments of {} s, each with its own initial state ({} numbers, eliminated)\n",
-                  segments.count, toShortText(segments.length, kDigits), segments.states);
+                  segments.count, toShortText(segments.length, kFigureDigits), segments.states);
   if (misfits) {
     text += "    Of what is unstable or chaotic shorter segments may fit: --segments " +
-            toShortText(0.5 * segments.length, kDigits) + "\n";
+            toShortText(0.5 * segments.length, kFigureDigits) + "\n";
   }
   return text;
 }
 
 /// The noise of outputs of which the file says that it is unknown.
 std::string describeInferredNoise(const SimulatorFit& fit) {
-  constexpr int kDigits = 3;
   std::string text;
   for (const NoiseReport& report : fit.noise) {
     if (!report.isStated()) {
       text += fmt::format("  noise of {}: {}{}, inferred; the size of its residual is not tested\n",
-                          report.output, toShortText(report.stddev, kDigits),
+                          report.output, toShortText(report.stddev, kStddevDigits),
                           report.unit.empty() ? "" : " " + report.unit);
     }
   }

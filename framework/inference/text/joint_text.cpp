@@ -20,8 +20,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr int kJointDigits = 6, kJointStddevDigits = 3;
-
 /// With what was found and asked later.
 InferredMeasurement takeTogether(const JointInference& inferred) {
   InferredMeasurement together = inferred.together;
@@ -51,8 +49,8 @@ Estimate combineEstimate(const JointInference& inferred, const std::vector<Param
 /// The posterior's, or that of recordings that scatter.
 Estimate selectEstimate(const JointInference& inferred, const InferredMeasurement& together,
                         const std::vector<ParameterSpec>& parameters) {
-  Estimate estimate =
-      inferred.scatter.empty() ? selectEstimate(together) : combineEstimate(inferred, parameters);
+  const bool scatters = inferred.disagrees() && !inferred.scatter.empty();
+  Estimate estimate = scatters ? combineEstimate(inferred, parameters) : selectEstimate(together);
   estimate.statuses = listStatuses(inferred, static_cast<Index>(parameters.size()));
   return estimate;
 }
@@ -77,8 +75,8 @@ std::string describeContradictions(const JointInference& inferred,
     text += fmt::format(
         "  {} contradicts {} in {} by {:.3g} sd: {} +- {}, {} +- {} {}\n", inferred.alone[one.first].label,
         inferred.alone[one.second].label, parameters[one.parameter].name.text, one.distance,
-        toShortText(first.mean[i], kJointDigits), toShortText(first.stddev[i], kJointStddevDigits),
-        toShortText(second.mean[i], kJointDigits), toShortText(second.stddev[i], kJointStddevDigits),
+        toShortText(first.mean[i], kEstimateDigits), toShortText(first.stddev[i], kStddevDigits),
+        toShortText(second.mean[i], kEstimateDigits), toShortText(second.stddev[i], kStddevDigits),
         parameters[one.parameter].unit);
   }
   return text;
@@ -145,12 +143,19 @@ std::string makeAloneTable(const JointInference& inferred, const std::vector<Par
   for (const RecordingInference& one : inferred.alone) {
     rows.push_back(
         {one.label + (one.posterior.is_linear ? ", linear" : ""), listStatuses(one.inferred).front()});
+    const Estimate estimate = selectEstimate(one.inferred);
     for (std::size_t p = 0; p < parameters.size(); ++p) {
       const auto i = static_cast<Index>(p);
       rows.back().push_back(one.posterior.isReliable()
-                                ? toShortText(one.posterior.mean[i], kJointDigits) + " +- " +
-                                      toShortText(one.posterior.stddev[i], kJointStddevDigits)
+                                ? toShortText(estimate.mean[i], kEstimateDigits) + " +- " +
+                                      toShortText(estimate.stddev[i], kStddevDigits)
                                 : "-");
+    }
+  }
+  if (!inferred.scatter.empty()) {
+    rows.push_back({"scatter over sd", ""});
+    for (const ScatterEstimate& one : inferred.scatter) {
+      rows.back().push_back(toShortText(one.ratio, kRoughDigits));
     }
   }
   return alignRows(rows, rows.front().size(), "  ");
@@ -219,7 +224,11 @@ std::string makeJointJson(const JointInference& inferred, const std::vector<Para
   const InferredMeasurement together = takeTogether(inferred);
   Json json = makeAnswerJson(together, selectEstimate(inferred, together, parameters), parameters, {});
   for (std::size_t p = 0; p < inferred.scatter.size(); ++p) {
-    json["parameters"][parameters[p].name.text]["scatter"] = inferred.scatter[p].scatter;
+    Json& one = json["parameters"][parameters[p].name.text];
+    one["scatter_over_sd"] = inferred.scatter[p].ratio;
+    if (inferred.disagrees()) {
+      one["scatter"] = inferred.scatter[p].scatter;
+    }
   }
   if (!inferred.joint.message.empty()) {
     json["message"] = inferred.joint.message;

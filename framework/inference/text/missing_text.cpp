@@ -44,9 +44,8 @@ std::string describeUnnoticed(const std::optional<ModelTest>& test,
     return "";
   }
   const UnnoticedTerm& term = *test->unnoticed;
-  constexpr int kDigits = 2;
   return fmt::format("  could go unnoticed: {} below {}{} ({} by up to {} of its sds)\n", term.term,
-                     toShortText(term.size, kDigits), term.unit.empty() ? "" : " " + term.unit,
+                     toShortText(term.size, kRoughDigits), term.unit.empty() ? "" : " " + term.unit,
                      parameters[term.parameter].name.text, toShiftText(term.shift));
 }
 

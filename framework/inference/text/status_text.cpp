@@ -9,6 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/informativeness.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/explain_notice.hpp"
@@ -93,7 +94,6 @@ bool isForOthers(const InferredMeasurement& inferred, Index parameter) {
 /// One explanation a parameter that is hardly better known than before.
 std::string explainUninformative(const InferredMeasurement& inferred, const Estimate& estimate,
                                  const std::vector<ParameterSpec>& parameters) {
-  constexpr double kPercent = 100.0;
   const std::vector<std::string>& unused = inferred.unused;
   std::string text;
   for (std::size_t p = 0; p < parameters.size() && estimate.isGiven(); ++p) {
@@ -108,7 +108,7 @@ std::string explainUninformative(const InferredMeasurement& inferred, const Esti
           fmt::format("  {}: nothing uses {}\n    Name it in an expression of the system, or take it out.\n",
                       getNotice(Notice::kUninformative).name, name);
     } else if (left > kUninformativeShare) {
-      const std::string reduced = fmt::format("{:.0f} %", kPercent * std::max(0.0, 1.0 - left));
+      const std::string reduced = fmt::format("{:.0f} %", 100.0 * std::max(0.0, 1.0 - left));
       text += isForOthers(inferred, i) ? explainBriefly(Notice::kUninformative, name, reduced)
                                        : explainNotice(Notice::kUninformative, name, reduced);
     }
@@ -190,8 +190,8 @@ std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureI
 /// How many times larger than stated the noise is, where the simulator's residuals look like noise; else 0.
 double findNoiseFactor(const InferredMeasurement& inferred) {
   constexpr double kWhite = 0.01, kLargest = 5.0;  // of thousands of normal numbers none is beyond 5
-  constexpr Index kFewest = 20;
-  if (!inferred.posterior || !inferred.posterior->fit || inferred.posterior->fit->residual.size() < kFewest) {
+  if (!inferred.posterior || !inferred.posterior->fit ||
+      inferred.posterior->fit->residual.size() < kFewestTested) {
     return 0.0;
   }
   const SimulatorFit& fit = *inferred.posterior->fit;
@@ -256,12 +256,11 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
 
 /// With the term of the model that would explain the recording as well.
 std::string explainClock(const InferredMeasurement& inferred) {
-  constexpr double kAsWell = 0.9;  // of the misfit beyond the noise
   const MissingTerm* term = inferred.findMissing();
   const auto is_clock = [](const std::string& name) {  // of the candidates
     return name.rfind("delay.", 0) == 0 || name.rfind("clock.", 0) == 0;
   };
-  const bool other = term != nullptr && term->share > kAsWell && !is_clock(term->term);
+  const bool other = term != nullptr && term->share > kMostOfMisfit && !is_clock(term->term);
   return explainNotice(
       Notice::kClockFault,
       fmt::format("{}{}", fmt::join(describe(inferred.clock_faults), "; "),
@@ -286,14 +285,14 @@ std::string describeColour(const Eigen::VectorXd& autoregression) {
 
 /// Of each output whose noise is coloured, or has an offset.
 std::string explainNoise(const std::vector<NoiseReport>& noise, bool offsets) {
-  constexpr int kDigits = 3;
   std::string text;
   for (const NoiseReport& report : noise) {
     const FoundNoise& found = report.found;
     const std::string unit = report.unit.empty() ? "" : " " + report.unit;
     if (offsets && found.has_offset) {
-      text += explainNotice(Notice::kSensorOffset, report.output, toShortText(found.offset, kDigits) + unit,
-                            toShortText(found.offset_stddev, kDigits) + unit);
+      text +=
+          explainNotice(Notice::kSensorOffset, report.output, toShortText(found.offset, kStddevDigits) + unit,
+                        toShortText(found.offset_stddev, kStddevDigits) + unit);
     }
     if (!offsets && found.autoregression.size() > 0) {
       text += explainNotice(Notice::kNoiseColoured, report.output, describeColour(found.autoregression));

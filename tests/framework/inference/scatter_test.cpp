@@ -28,6 +28,14 @@ TEST(Scatter, OfEquallyKnownValuesIsTheirSpread) {
   EXPECT_NEAR(estimate.factor.of95, 3.182446, 1e-5);  // t of 3 degrees
 }
 
+TEST(Scatter, IsSeenThoughOneValueIsKnownFarBetterThanOthers) {
+  const VectorXd values = (VectorXd(5) << 0.0, 1.0, -1.2, 0.9, -0.8).finished();
+  const VectorXd stddevs = (VectorXd(5) << 1e-5, 0.1, 0.1, 0.1, 0.1).finished();
+  const ScatterEstimate estimate = combineScattered(values, stddevs);
+  EXPECT_NEAR(estimate.scatter, 1.0, 0.1);  // that of Cochran's Q is 4e-2
+  EXPECT_GT(estimate.ratio, 9.0);
+}
+
 TEST(Scatter, IntervalsHoldWithFewRecordings) {
   constexpr int kTests = 2000;
   const RandomStream random(5, RandomPurpose::kVerification);
