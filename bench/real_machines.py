@@ -41,7 +41,7 @@ MACHINES = [
         [10, 15],
         {"M": "95.11", "Fv": "203.5", "coulomb_q": "20.39", "constant_force_q": "3.16"},
         ["coulomb.q", "constant_force.q"],
-        """Friction is found first, then a constant force, then a gain of the voltage, which nothing on the machine has: the measured voltage is larger than that of the loop at the same motion. If it is the loop's own gain that differs, forces are larger by as much: the first window alone, with an offset of the voltage in the place of the force, is explained with M 86.3 kg, Fv 159 N s/m and a friction of 20.7 N, which times the gain of 1.098 are 94.8, 175 and 22.7, close to the published ones. Of both windows together the posterior is not reliable: no corrected parameters, and predictions are worse.""",
+        """Friction is found first, then a constant force, then a gain of the voltage, which nothing on the machine has. If the loop's own gain differs, forces are larger by as much: the first window alone is explained with M 86.3 kg, Fv 159 N s/m and a friction of 20.7 N, which times the gain of 1.098 are 94.8, 175 and 22.7, close to the published ones. Of both windows together the posterior is not reliable: no corrected parameters, and predictions are worse.""",
     ),
     Machine(
         "fork",
@@ -52,7 +52,7 @@ MACHINES = [
         [19.9],
         {"J": "0.2458"},
         ["coulomb.angle"],
-        """Friction is found, its shape is not: five shapes fit, and the answer is averaged over them. The first 10 s alone are `ok` with c 0.0538 +- 0.0007 and without friction: one window does not show it. J holds for the lever 0.4778 m; its published sd of 3 mm adds 0.003. The record's period is 1.590 s, the published one 1.602 s, which is what remains between 0.231 and 0.246.""",
+        """Friction is found, its shape is not: five shapes fit, and the answer is averaged over them. The first 10 s alone are `ok` without friction. The record's period is 1.590 s, the published one 1.602 s: that is what remains between 0.231 and 0.246.""",
     ),
     Machine(
         "pendulum",
@@ -69,7 +69,7 @@ MACHINES = [
             "constant_force_q": "0.076",
         },
         ["coulomb.q", "constant_force.q", "delay.tau"],
-        """Published are the values of the bench's controllers (0.6755 kg at 0.5 m) and, second, those of an identification from another recording. Friction is found, somewhat below the published; with a delay of the torque added by hand, mass and inertia agree with the controllers' values. The delay itself is not found: friction is taken first, and then it does not stand out. The recording of the published identification, whose torque chatters by 17 N m, ends without an answer. Predictions do not improve: the held windows pass near the upright position, where errors grow.""",
+        """Published are the values of the bench's controllers and, second, those of an identification from another recording. Friction is found, somewhat below the published; with a delay of the torque added by hand, mass and inertia agree with the controllers' values. The delay itself does not stand out beside friction. Predictions do not improve: the held windows pass near the upright position, where errors grow.""",
     ),
     Machine(
         "double_pendulum",

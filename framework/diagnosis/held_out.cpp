@@ -101,6 +101,20 @@ VectorXd calcOutputRms(const VectorXd& residual, const std::vector<FeatureInfo>&
   return squares.cwiseQuotient(counts).cwiseSqrt();  // 0/0: NaN
 }
 
+/// Of the noise of each output; NaN of those for which none is stated.
+VectorXd collectStddevs(const ExperimentSpec& experiment) {
+  const std::vector<OutputSpec>& outputs = experiment.model.outputs;
+  VectorXd stddevs = VectorXd::Constant(static_cast<Index>(outputs.size()), std::nan(""));
+  for (const OutputNoiseSpec& noise : experiment.noise.stddev) {
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      if (outputs[i].name.text == noise.name.text) {
+        stddevs[static_cast<Index>(i)] = experiment.noise.scale * noise.stddev;
+      }
+    }
+  }
+  return stddevs;
+}
+
 /// chi-square of the residual by the noise and the covariance of the first p columns' parameters; what the
 /// others explain, and as many degrees of freedom, is left out.
 void setPredictiveTest(const VectorXd& residual, const MatrixXd& jacobian, const KnownMachine& machine,
@@ -167,6 +181,12 @@ KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatur
   return {posterior.best.head(p), covariance.topLeftCorner(p, p)};
 }
 
+KnownMachine stateMachine(const ExperimentSpec& experiment, const VectorXd& parameters) {
+  constexpr double kExact = 1e-6;
+  const VectorXd stddevs = kExact * calcWidths(experiment.model.parameters);
+  return {parameters, stddevs.cwiseAbs2().asDiagonal()};
+}
+
 HeldOutPrediction predictHeldOut(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                                  const KnownMachine& machine, double from) {
   const RecordingsProblem problem(experiment, recording);
@@ -178,6 +198,7 @@ HeldOutPrediction predictHeldOut(const ExperimentSpec& experiment, const Recorde
   prediction.rms = calcRms(residual);
   prediction.output_rms =
       calcOutputRms(updated.residual, infos, rows, static_cast<Index>(experiment.model.outputs.size()));
+  prediction.unit_rms = prediction.output_rms.cwiseProduct(collectStddevs(experiment));
   setPredictiveTest(residual, updated.jacobian(rows, Eigen::all), machine, prediction);
   const VectorXd center = calcBoxCenter(experiment.model.parameters);
   const LinearizedRecordings nominal = problem.linearize(fitNuisance(experiment, recording, center));

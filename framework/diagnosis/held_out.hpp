@@ -23,11 +23,15 @@ ExperimentSpec sizeNoiseByFit(const ExperimentSpec& experiment, const RecordedFe
 KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                           const SimulatorPosteriorOptions& options);
 
+/// As others state them: exact, up to a millionth of the bounds.
+KnownMachine stateMachine(const ExperimentSpec& experiment, const Eigen::VectorXd& parameters);
+
 /// How well a model predicts a recording that it has not seen. Residuals are in noise standard deviations.
 struct HeldOutPrediction {
   double rms = 0.0;            ///< of the updated model
   double nominal_rms = 0.0;    ///< of the model at the centre of the bounds
   Eigen::VectorXd output_rms;  ///< of each output; NaN of one without samples
+  Eigen::VectorXd unit_rms;  ///< the same in the output's unit; NaN where its noise has no standard deviation
   double chi_square = 0.0;  ///< of what the noise and the parameters' covariance should leave of the residual
   double degrees = 0.0;
   double p_value = 1.0;

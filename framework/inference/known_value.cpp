@@ -34,19 +34,19 @@ double findValue(const ParameterSpec& input, const std::vector<KnownValue>& valu
 
 }  // namespace
 
-KnownValue parseKnownValue(const std::string& text) {
+KnownValue parseKnownValue(const std::string& text, const std::string& option) {
   const std::size_t equals = text.find('=');
   KnownValue known{text.substr(0, equals), 0.0};
   if (equals == std::string::npos || !parseLiteral(text.substr(equals + 1), known.value)) {
-    throw ExperimentError("--set " + text + ": must be NAME=NUMBER");
+    throw ExperimentError(option + " " + text + ": must be NAME=NUMBER");
   }
   return known;
 }
 
-std::vector<KnownValue> parseKnownValues(const std::vector<std::string>& texts) {
+std::vector<KnownValue> parseKnownValues(const std::vector<std::string>& texts, const std::string& option) {
   std::vector<KnownValue> values;
   for (const std::string& text : texts) {
-    values.push_back(parseKnownValue(text));
+    values.push_back(parseKnownValue(text, option));
   }
   return values;
 }

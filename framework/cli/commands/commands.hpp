@@ -144,6 +144,7 @@ struct ValidateArguments {
   std::vector<std::string> files;    ///< measurements of one machine, which its parameters are inferred from
   std::vector<std::string> against;  ///< those that are predicted
   std::vector<std::string> known;    ///< "NAME=VALUE" of the inputs
+  std::vector<std::string> stated;   ///< the same of all parameters, in the place of an inference
   std::vector<double> starts;        ///< as of diagnose, in `files`
   std::vector<double> against_starts;  ///< in `against`
   std::optional<double> max_rms;  ///< of a prediction, in noise standard deviations; none: what noise allows

@@ -93,9 +93,16 @@ void addValidate(CLI::App& app) {
                    "Folder of a finished run, its maps.h5, or an experiment file (YAML)")
       ->required()
       ->option_text(" ");
-  command->add_option("MEASUREMENT", arguments->files, "Files of one machine, to infer its parameters from")
-      ->required()
+  command
+      ->add_option(
+          "MEASUREMENT", arguments->files,
+          "Files of one machine, to infer its parameters from (with --with, the size of unknown noise)")
       ->option_text(" ");
+  command
+      ->add_option("--with", arguments->stated,
+                   "Predict by these values of all parameters, as others state them: M=95.11,Fv=203.5")
+      ->delimiter(',')
+      ->type_name("NAME=VALUE,...");
   command->add_option("--against", arguments->against, "Files to predict")->required()->type_name("FILE");
   addKnown(*command, arguments->known);
   addStarts(*command, arguments->starts);

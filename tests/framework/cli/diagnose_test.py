@@ -187,6 +187,19 @@ class Diagnose(FolderTestCase):
         self.assertIn(f"Noise as {mended} leaves it", call("select", unknown, mended, self.rubbing).stdout)
         self.assertIn("differ in the outputs", call("select", CART, mended, self.rubbing).stderr)
 
+    def test_stated_values_predict_without_an_inference(self):
+        again = self.simulate("stated.csv", "seed=3", "parameters.k=95", "parameters.d=1.2", "parameters.k3=2500")
+        right = call("validate", CART, "--with", "k=95,d=1.2,k3=2500", "--against", again, "--json")
+        self.assertEqual(right.returncode, 0, right.stderr)
+        row = json.loads(right.stdout)["predictions"][0]
+        self.assertAlmostEqual(row["rms"], 1, delta=0.25)
+        self.assertAlmostEqual(row["rms_in_units"]["x"], 1e-4 * row["rms"], delta=1e-9)
+        wrong = call("validate", CART, "--with", "k=95,d=1.3,k3=2500", "--against", again)
+        self.assertEqual(wrong.returncode, 3, wrong.stderr)
+        for stated, said in [("k=95", "'d' is not stated"), ("kk=95", "did you mean 'k'"), ("k=a", "NAME=NUMBER")]:
+            self.assertIn(said, call("validate", CART, "--with", stated, "--against", again).stderr)
+        self.assertIn("--with", call("validate", CART, "--against", again).stderr)
+
     def test_says_what_a_test_is_blind_to(self):
         spots = {spot["term"]: spot for spot in json.loads(self.diagnose(CART, "--json"))["blind_spots"]}
         self.assertIsNone(spots["damping.x"]["noticed_from"])

@@ -1,19 +1,25 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
 #include "framework/base/json/json.hpp"
+#include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/base/text/source_location.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/held_out.hpp"
+#include "framework/experiment/check/known_names.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
 namespace twinmap::cli {
 namespace {
+
+using Eigen::VectorXd;
 
 constexpr int kFigures = 3;
 
@@ -30,10 +36,11 @@ bool isGood(const HeldOutPrediction& prediction, const std::optional<double>& ma
          (max_rms ? prediction.rms <= *max_rms : prediction.p_value >= kLevel);
 }
 
-std::string makeValidationTable(const std::vector<Validated>& all, const std::vector<OutputSpec>& outputs) {
+std::string makeValidationTable(const std::vector<Validated>& all, const ResponseLayout& outputs) {
   std::vector<std::vector<std::string>> rows{{"predicted", "rms (noise sd)", "nominal", "p", ""}};
-  for (const OutputSpec& output : outputs) {
-    rows.front().push_back(output.name.text);
+  for (std::size_t o = 0; o < outputs.output_names.size(); ++o) {
+    rows.front().push_back(outputs.output_names[o]);
+    rows.front().push_back(fmt::format("({})", outputs.output_units[o]));
   }
   for (const Validated& one : all) {
     const HeldOutPrediction& prediction = one.prediction;
@@ -41,14 +48,17 @@ std::string makeValidationTable(const std::vector<Validated>& all, const std::ve
                     toShortText(prediction.nominal_rms, kFigures),
                     prediction.p_value < 1e-4 ? "< 0.0001" : toShortText(prediction.p_value, 2),
                     one.is_good ? "passed" : "failed"});
-    for (const double rms : prediction.output_rms) {
-      rows.back().push_back(std::isfinite(rms) ? toShortText(rms, kFigures) : "-");
+    for (std::size_t o = 0; o < outputs.output_names.size(); ++o) {
+      for (const VectorXd* rms : {&prediction.output_rms, &prediction.unit_rms}) {
+        const double own = (*rms)[static_cast<Eigen::Index>(o)];
+        rows.back().push_back(std::isfinite(own) ? toShortText(own, kFigures) : "-");
+      }
     }
   }
   return alignRows(rows, 1);
 }
 
-std::string makeValidationJson(const std::vector<Validated>& all, const std::vector<OutputSpec>& outputs) {
+std::string makeValidationJson(const std::vector<Validated>& all, const ResponseLayout& outputs) {
   Json json{{"predictions", Json::array()}};
   for (const Validated& one : all) {
     const HeldOutPrediction& prediction = one.prediction;
@@ -59,13 +69,57 @@ std::string makeValidationJson(const std::vector<Validated>& all, const std::vec
              {"degrees", prediction.degrees},
              {"p_value", prediction.p_value},
              {"passed", one.is_good}};
-    for (std::size_t o = 0; o < outputs.size(); ++o) {
+    for (std::size_t o = 0; o < outputs.output_names.size(); ++o) {
       const double rms = prediction.output_rms[static_cast<Eigen::Index>(o)];
-      row["outputs"][outputs[o].name.text] = std::isfinite(rms) ? Json(rms) : Json(nullptr);
+      row["outputs"][outputs.output_names[o]] = std::isfinite(rms) ? Json(rms) : Json(nullptr);
+      if (const double own = prediction.unit_rms[static_cast<Eigen::Index>(o)]; std::isfinite(own)) {
+        row["rms_in_units"][outputs.output_names[o]] = own;
+      }
     }
     json["predictions"].push_back(row);
   }
   return formatJson(json);
+}
+
+VectorXd collectStated(const std::vector<ParameterSpec>& parameters, const std::vector<KnownValue>& stated) {
+  const std::vector<std::string> names = collectNames(parameters);
+  VectorXd values = VectorXd::Constant(static_cast<Eigen::Index>(parameters.size()), std::nan(""));
+  for (const KnownValue& one : stated) {
+    const auto found = std::find(names.begin(), names.end(), one.name);
+    if (found == names.end()) {
+      throw ExperimentError("--with: '" + one.name + "' is not a parameter of this experiment" +
+                            suggestName(one.name, names));
+    }
+    values[found - names.begin()] = one.value;
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::isnan(values[static_cast<Eigen::Index>(i)])) {
+      throw ExperimentError("--with: the parameter '" + names[i] + "' is not stated; state all of them");
+    }
+  }
+  return values;
+}
+
+/// Of the parameters that are stated or, without them, of those inferred from `fitted`.
+KnownMachine findMachine(const ExperimentSpec& experiment, const ValidateArguments& arguments,
+                         const RecordedFeatures& fitted, const SimulatorPosteriorOptions& options) {
+  return arguments.stated.empty()
+             ? inferMachine(experiment, fitted, options)
+             : stateMachine(experiment, collectStated(experiment.model.parameters,
+                                                      parseKnownValues(arguments.stated, "--with")));
+}
+
+void requireFiles(const ValidateArguments& arguments, const ExperimentSpec& experiment) {
+  if (!arguments.files.empty()) {
+    return;
+  }
+  if (arguments.stated.empty()) {
+    throw ExperimentError(
+        "validate: give files to infer the parameters from, or state them: --with NAME=VALUE,...");
+  }
+  if (hasUnknownNoise(experiment.noise)) {
+    throw ExperimentError("validate: the size of the noise is unknown; give files to find it from");
+  }
 }
 
 }  // namespace
@@ -76,11 +130,12 @@ void validate(const ValidateArguments& arguments) {
   const InferenceSource source(arguments.run);
   const MeasurementReader& reader = source.getReader();
   const std::vector<KnownValue> known = parseKnownValues(arguments.known);
+  requireFiles(arguments, reader.getExperiment());
   const RecordedFeatures fitted = readRecordings(reader, arguments.files, arguments.starts, known);
   const SimulatorPosteriorOptions options =
       makePosteriorOptions(reader.getExperiment(), SimulatorPosteriorOptions{}.draws);
   const ExperimentSpec experiment = sizeNoiseByFit(reader.getExperiment(), fitted, options);
-  const KnownMachine machine = inferMachine(experiment, fitted, options);
+  const KnownMachine machine = findMachine(experiment, arguments, fitted, options);
   std::vector<Validated> all;
   for (const std::string& file : arguments.against) {
     const RecordedFeatures windows = readRecordings(reader, {file}, arguments.against_starts, known);
@@ -96,7 +151,7 @@ void validate(const ValidateArguments& arguments) {
     }
   }
   waiting.clear();
-  const std::vector<OutputSpec>& outputs = reader.getExperiment().model.outputs;
+  const ResponseLayout& outputs = reader.getLayout();
   std::cout << (arguments.json ? makeValidationJson(all, outputs) + "\n" : makeValidationTable(all, outputs));
   std::cout.flush();
   const auto failed =
