@@ -92,8 +92,16 @@ SampledMeasurement SimulatorSampler::samplePosterior(const VectorXd& features, c
   if (!fit.isSimulated() || fit.isPlausible() || !readsOutputs()) {
     return sampled;
   }
-  for (const NoiseHypothesis& noise : listNoise(stated, features, known, fit.best)) {
-    SampledMeasurement other = sampleUnder(noise, features, known, fit.best, options);
+  std::vector<NoiseHypothesis> others = listNoise(stated, features, known, fit.best);
+  if (fit.chi_square > kGrossMisfit * fit.degrees) {  // no noise is so large, but a few samples may be off
+    others.erase(std::remove_if(others.begin(), others.end(),
+                                [](const NoiseHypothesis& noise) {
+                                  return noise.has_outliers && !noise.outputs.empty();
+                                }),
+                 others.end());
+  }
+  for (const NoiseHypothesis& noise : others) {
+    SampledMeasurement other = sampleUnder(noise, features, known, fit.best, sparing);
     if (other.estimate.isReliable() && explains(*other.estimate.fit, fit.residual.size())) {
       return other;
     }

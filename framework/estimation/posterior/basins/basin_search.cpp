@@ -5,6 +5,7 @@
 
 #include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
+#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -174,10 +175,16 @@ class BasinHunt {
     return !found_.basins.empty() && found_.basins.front().searches >= options_.confirmations;
   }
 
+  /// What the best basin leaves is so much that no noise is taken for it.
+  bool isGross() const {
+    const LocalSurface& best = found_.basins.front().local;
+    return best.chi_square > kGrossMisfit * best.degrees;
+  }
+
   /// Whether enough searches, and so large a share, end in the best basin, which is as wide as if the noise
   /// were as large as the residual.
   bool isSettled(double share) const {
-    if (!options_.settles || found_.basins.empty()) {
+    if (found_.basins.empty()) {
       return false;
     }
     const Basin& best = found_.basins.front();
@@ -270,7 +277,7 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
       return hunt.getFound();
     }
   }
-  if (!hunt.isExplained() && hunt.isSettled(kSettledScouts)) {
+  if (options.settles && !hunt.isExplained() && hunt.isSettled(kSettledScouts)) {
     return hunt.getFound();
   }
   MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
@@ -284,7 +291,9 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
       hunt.searchWindows(all);
     }
     again.resize(Eigen::NoChange, 0);
-    if (hunt.getFound().basins.empty() || hunt.isConfirmed() || hunt.isSettled(kSettledBatches)) {
+    const bool may_settle = !hunt.getFound().basins.empty() && (options.settles || hunt.isGross());
+    if (hunt.getFound().basins.empty() || hunt.isConfirmed() ||
+        (may_settle && hunt.isSettled(kSettledBatches))) {
       break;
     }
   }

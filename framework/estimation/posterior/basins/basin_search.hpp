@@ -39,7 +39,8 @@ struct BasinSearchOptions {
   bool from_prior = false;
   /// Whether the scouts do where half of them end in the best basin, and a batch where it was found often
   /// enough, although noise does not explain it: for models that lack something, whose best fit is wanted but
-  /// not trusted. The basin is then as wide as if the noise were as large as the residual.
+  /// not trusted. The basin is then as wide as if the noise were as large as the residual. Of a gross misfit
+  /// a batch always does.
   bool settles = false;
 };
 
