@@ -1,7 +1,6 @@
 #include "framework/estimation/network/network_file.hpp"
 
-#include <stdexcept>
-
+#include "framework/base/hdf5/hdf5_fields.hpp"
 #include "framework/estimation/surrogate/surrogate_file.hpp"
 
 namespace twinmap {
@@ -9,48 +8,33 @@ namespace {
 
 using Eigen::Index;
 
-std::string getLayerGroup(const std::string& group, std::size_t layer) {
-  return group + "/layers/" + std::to_string(layer);
-}
-
-std::string getMemberGroup(const std::string& group, std::size_t member) {
-  return group + "/members/" + std::to_string(member);
-}
-
-void writeMember(Hdf5Writer& file, const std::string& group, const network::Member& member) {
-  const network::Network& network = member.network;
-  file.write(group + "/regression/offset", network.offset);
-  file.writeSamples(group + "/regression/weights", network.skip.transpose());
-  file.write(group + "/regression/scale", network.scale);
-  file.write(group + "/regression/squared", static_cast<double>(network.products.squared));
-  file.write(group + "/regression/cubed", static_cast<double>(network.products.cubed));
-  file.write(group + "/layers/count", static_cast<double>(network.layers.size()));
-  for (std::size_t i = 0; i < network.layers.size(); ++i) {
-    file.writeSamples(getLayerGroup(group, i) + "/weights", network.layers[i].weights.transpose());
-    file.write(getLayerGroup(group, i) + "/biases", network.layers[i].biases);
-  }
-  if (member.last_layer.size() > 0) {
-    file.writeSamples(group + "/last_layer", member.last_layer);
+template <class Fields, class Member>
+void listMember(const Fields& fields, Member& member) {
+  auto& network = member.network;
+  fields("regression/offset", network.offset);
+  fields.transposed("regression/weights", network.skip);
+  fields("regression/scale", network.scale);
+  fields("regression/squared", network.products.squared);
+  fields("regression/cubed", network.products.cubed);
+  fields.each("layers/count", "layers", network.layers, [](const Fields& of_layer, auto& layer) {
+    of_layer.transposed("weights", layer.weights);
+    of_layer("biases", layer.biases);
+  });
+  if (fields.has("last_layer", member.last_layer.size() > 0)) {
+    fields("last_layer", member.last_layer);
   }
 }
 
-network::Member readMember(const Hdf5Reader& file, const std::string& group) {
-  network::Member member;
-  network::Network& network = member.network;
-  network.offset = file.readVector(group + "/regression/offset");
-  network.skip = file.readSamples(group + "/regression/weights").transpose();
-  network.scale = file.readVector(group + "/regression/scale");
-  network.products = {file.readCount(group + "/regression/squared"),
-                      file.readCount(group + "/regression/cubed")};
-  const auto layers = static_cast<std::size_t>(file.readCount(group + "/layers/count"));
-  for (std::size_t i = 0; i < layers; ++i) {
-    network.layers.push_back({file.readSamples(getLayerGroup(group, i) + "/weights").transpose(),
-                              file.readVector(getLayerGroup(group, i) + "/biases")});
-  }
-  if (file.contains(group + "/last_layer")) {
-    member.last_layer = file.readSamples(group + "/last_layer");
-  }
-  return member;
+template <class Fields, class Map>
+void listMap(const Fields& fields, Map& map) {
+  fields("inputs/center", map.inputs.center);
+  fields.transposed("inputs/projection", map.inputs.projection);
+  fields("inputs/known_center", map.inputs.known.center);
+  fields("inputs/known_half_width", map.inputs.known.half_width);
+  fields("center", map.center);
+  fields("half_width", map.half_width);
+  fields.each("members/count", "members", map.members,
+              [](const Fields& of_member, auto& member) { listMember(of_member, member); });
 }
 
 /// Whether a network of k inputs and p targets has layers of sizes that follow each other.
@@ -89,35 +73,16 @@ bool fitsTogether(const NetworkMap& map) {
 }  // namespace
 
 void writeNetworkMap(Hdf5Writer& file, const std::string& group, const NetworkMap& map) {
-  file.write(group + "/inputs/center", map.inputs.center);
-  file.writeSamples(group + "/inputs/projection", map.inputs.projection.transpose());
-  file.write(group + "/inputs/known_center", map.inputs.known.center);
-  file.write(group + "/inputs/known_half_width", map.inputs.known.half_width);
-  file.write(group + "/center", map.center);
-  file.write(group + "/half_width", map.half_width);
-  file.write(group + "/members/count", static_cast<double>(map.members.size()));
-  for (std::size_t i = 0; i < map.members.size(); ++i) {
-    writeMember(file, getMemberGroup(group, i), map.members[i]);
-  }
+  listMap(WrittenFields(file, group), map);
   writeValidation(file, group + "/validation", map.validation);
 }
 
 NetworkMap readNetworkMap(const Hdf5Reader& file, const std::string& group) {
   NetworkMap map;
-  map.inputs = {
-      file.readVector(group + "/inputs/center"),
-      file.readSamples(group + "/inputs/projection").transpose(),
-      {file.readVector(group + "/inputs/known_center"), file.readVector(group + "/inputs/known_half_width")}};
-  map.center = file.readVector(group + "/center");
-  map.half_width = file.readVector(group + "/half_width");
-  const auto members = static_cast<std::size_t>(file.readCount(group + "/members/count"));
-  for (std::size_t i = 0; i < members; ++i) {
-    map.members.push_back(readMember(file, getMemberGroup(group, i)));
-  }
+  const ReadFields fields(file, group);
+  listMap(fields, map);
   map.validation = readValidation(file, group + "/validation");
-  if (!fitsTogether(map)) {
-    throw std::runtime_error(file.getPath() + ": " + group + " has parts that do not fit each other");
-  }
+  fields.require(fitsTogether(map));
   return map;
 }
 

@@ -1,8 +1,8 @@
 #include "framework/estimation/trained/trust_file.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 
+#include "framework/base/hdf5/hdf5_fields.hpp"
 #include "framework/estimation/surrogate/surrogate_file.hpp"
 
 namespace twinmap {
@@ -19,21 +19,44 @@ std::vector<std::int64_t> flatten(const std::vector<ResidualRun>& runs) {
   return flat;
 }
 
-void writeCoverage(Hdf5Writer& file, const std::string& group, const CoverageRecord& record) {
-  file.write(group + "/tested", static_cast<double>(record.tested));
-  file.write(group + "/share", record.share);
-}
-
-CoverageRecord readCoverage(const Hdf5Reader& file, const std::string& group) {
-  return {file.readCount(group + "/tested"), file.readVector(group + "/share")};
-}
-
 std::vector<ResidualRun> unflatten(const std::vector<std::int64_t>& flat) {
   std::vector<ResidualRun> runs;
   for (std::size_t i = 0; i + 1 < flat.size(); i += 2) {
     runs.push_back({flat[i], flat[i + 1]});
   }
   return runs;
+}
+
+template <class Fields, class Record>
+void listCoverage(const Fields& fields, Record& record) {
+  fields("tested", record.tested);
+  fields("share", record.share);
+}
+
+template <class Fields, class Trust>
+void listTrust(const Fields& fields, Trust& trust) {
+  fields("space/whitener", trust.space.whitener);
+  fields("space/directions", trust.space.directions);
+  fields("space/unmodelled", trust.space.unmodelled);
+  fields("space/unmodelled_stddev", trust.space.unmodelled_stddev);
+  fields.converted("runs", trust.runs, flatten, unflatten);
+  fields("reference/chi_square", trust.chi_square.sorted);
+  fields("reference/anomaly", trust.anomaly.sorted);
+  fields("reference/noise_anomaly", trust.noise_anomaly.sorted);
+  fields("reference/refinement/tried", trust.refinement.tried);
+  fields("reference/refinement/unexplained", trust.refinement.unexplained);
+  listCoverage(fields.in("reference/coverage"), trust.coverage);
+  listCoverage(fields.in("reference/refinement/coverage"), trust.refined_coverage);
+  if (fields.has("reference/posteriors", true)) {
+    fields("reference/posteriors/ranked", trust.posteriors.ranked);
+    fields("reference/posteriors/p_value", trust.posteriors.p_value);
+  }
+  fields("cloud/inputs", trust.cloud.inputs);
+  fields("cloud/scale", trust.cloud.scale);
+  fields("cloud/reach", trust.cloud.reach);
+  fields("box/center", trust.center);
+  fields("box/half_width", trust.half_width);
+  fields("unknown", trust.unknown);
 }
 
 bool liesWithin(const std::vector<ResidualRun>& runs, Index residuals) {
@@ -68,28 +91,10 @@ void writeTrustModel(Hdf5Writer& file, const std::string& group, const TrustMode
   if (trust.forward.get() != of_map) {
     writeForward(file, group + "/forward", *trust.forward);
   }
-  file.writeSamples(group + "/space/whitener", trust.space.whitener);
-  file.writeSamples(group + "/space/directions", trust.space.directions);
-  file.writeSamples(group + "/space/unmodelled", trust.space.unmodelled);
-  file.write(group + "/space/unmodelled_stddev", trust.space.unmodelled_stddev);
-  file.write(group + "/runs", flatten(trust.runs));
-  file.write(group + "/reference/chi_square", trust.chi_square.sorted);
-  file.write(group + "/reference/anomaly", trust.anomaly.sorted);
-  file.write(group + "/reference/noise_anomaly", trust.noise_anomaly.sorted);
-  file.write(group + "/reference/refinement/tried", static_cast<double>(trust.refinement.tried));
-  file.write(group + "/reference/refinement/unexplained", trust.refinement.unexplained);
-  writeCoverage(file, group + "/reference/coverage", trust.coverage);
-  writeCoverage(file, group + "/reference/refinement/coverage", trust.refined_coverage);
-  file.write(group + "/reference/posteriors/ranked", static_cast<double>(trust.posteriors.ranked));
-  file.write(group + "/reference/posteriors/p_value", trust.posteriors.p_value);
-  file.writeSamples(group + "/cloud/inputs", trust.cloud.inputs);
-  file.write(group + "/cloud/scale", trust.cloud.scale);
-  file.write(group + "/cloud/reach", trust.cloud.reach);
-  file.write(group + "/box/center", trust.center);
-  file.write(group + "/box/half_width", trust.half_width);
-  file.write(group + "/unknown", static_cast<double>(trust.unknown));
+  const WrittenFields fields(file, group);
+  listTrust(fields, trust);
   writePrior(file, group + "/prior", trust.prior);
-  file.write(group + "/level", trust.level);
+  fields("level", trust.level);
 }
 
 TrustModel readTrustModel(const Hdf5Reader& file, const std::string& group,
@@ -98,29 +103,10 @@ TrustModel readTrustModel(const Hdf5Reader& file, const std::string& group,
   trust.forward = file.contains(group + "/forward")
                       ? std::make_shared<const ForwardSurrogate>(readForward(file, group + "/forward"))
                       : std::move(of_map);
-  trust.space = {file.readSamples(group + "/space/whitener"), file.readSamples(group + "/space/directions"),
-                 file.readSamples(group + "/space/unmodelled"),
-                 file.readVector(group + "/space/unmodelled_stddev")};
-  trust.runs = unflatten(file.readIntegers(group + "/runs"));
-  trust.chi_square = {file.readVector(group + "/reference/chi_square")};
-  trust.anomaly = {file.readVector(group + "/reference/anomaly")};
-  trust.noise_anomaly = {file.readVector(group + "/reference/noise_anomaly")};
-  trust.refinement = {file.readCount(group + "/reference/refinement/tried"),
-                      file.readVector(group + "/reference/refinement/unexplained")};
-  trust.coverage = readCoverage(file, group + "/reference/coverage");
-  trust.refined_coverage = readCoverage(file, group + "/reference/refinement/coverage");
-  if (const std::string posteriors = group + "/reference/posteriors"; file.contains(posteriors)) {
-    trust.posteriors = {file.readCount(posteriors + "/ranked"), file.readVector(posteriors + "/p_value")};
-  }
-  trust.cloud = {file.readSamples(group + "/cloud/inputs"), file.readVector(group + "/cloud/scale"),
-                 file.readNumber(group + "/cloud/reach")};
-  trust.center = file.readVector(group + "/box/center");
-  trust.half_width = file.readVector(group + "/box/half_width");
-  trust.unknown = file.readCount(group + "/unknown");
-  trust.level = file.readNumber(group + "/level");
-  if (!fitsTogether(trust)) {
-    throw std::runtime_error(file.getPath() + ": " + group + " has parts that do not fit each other");
-  }
+  const ReadFields fields(file, group);
+  listTrust(fields, trust);
+  fields("level", trust.level);
+  fields.require(fitsTogether(trust));
   trust.prior = readPrior(file, group + "/prior", trust.unknown);
   return trust;
 }
