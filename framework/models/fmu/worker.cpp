@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <limits>
 #include <optional>
 
 #include "framework/base/worker/serve_frames.hpp"

@@ -2,7 +2,7 @@
 
 #include "framework/models/fmu/instance/functions.hpp"
 #include "framework/models/fmu/instance/instance.hpp"
-#include "framework/models/fmu/instance/log_categories.hpp"
+#include "framework/models/fmu/instance/message_log.hpp"
 #include "framework/models/fmu/instance/native_values.hpp"
 
 namespace twinmap::fmi {
