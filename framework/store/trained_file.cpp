@@ -1,16 +1,39 @@
 #include "framework/store/trained_file.hpp"
 
-#include <memory>
 #include <stdexcept>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/estimation/trained/estimator_kinds.hpp"
+#include "framework/estimation/estimator.hpp"
+#include "framework/estimation/gp/online_processes.hpp"
+#include "framework/estimation/network/online_network.hpp"
+#include "framework/estimation/surrogate/online_surrogate.hpp"
 #include "framework/estimation/trained/trust_file.hpp"
 #include "framework/store/parameters_group.hpp"
 #include "framework/store/reduction_group.hpp"
 
 namespace twinmap {
 namespace {
+
+struct EstimatorKind {
+  const char* name;
+  std::shared_ptr<const Estimator> (*load)(const Hdf5Reader& file, const std::string& group);
+};
+
+constexpr EstimatorKind kKinds[] = {
+    {"gp", loadProcesses}, {"surrogate", loadSurrogate}, {"network", loadNetwork}};
+
+/// Reads a trained estimator of a kind (Estimator::getKind()) from `group` of maps.h5; it infers bit for bit
+/// as the one that was saved. Throws std::runtime_error for a kind that nobody knows, and for parts that are
+/// missing or do not fit each other.
+std::shared_ptr<const Estimator> loadEstimator(const std::string& kind, const Hdf5Reader& file,
+                                               const std::string& group) {
+  for (const EstimatorKind& known : kKinds) {
+    if (kind == known.name) {
+      return known.load(file, group);
+    }
+  }
+  throw std::runtime_error(file.getPath() + ": unknown kind of map '" + kind + "'");
+}
 
 constexpr const char* kFormat = "twinmap maps 4";
 constexpr const char* kParameters = "/parameters";

@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "kernels/lanes/event_bracket.hpp"
 #include "kernels/lanes/event_programs.hpp"
 #include "kernels/lanes/lane.hpp"
 #include "kernels/lanes/problem.hpp"

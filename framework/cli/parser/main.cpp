@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/commands.hpp"

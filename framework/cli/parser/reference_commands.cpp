@@ -16,7 +16,7 @@ namespace {
 void addVariables(CLI::App& app) {
   const auto file = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("variables", "Print the variables of an FMU");
-  command->add_option("FMU", *file, "File of FMI 2.0 or 3.0")->required()->option_text(" ");
+  addArgument(*command, "FMU", *file, "File of FMI 2.0 or 3.0");
   command->callback([file] { printVariables(*file); });
 }
 
@@ -79,10 +79,7 @@ void addCompletion(CLI::App& app) {
   const auto shell = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("completion", "Print a script that completes command lines");
   command->footer("Source it, or install it where the shell looks for such scripts.");
-  command->add_option("SHELL", *shell, "bash, zsh or fish")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}))
-      ->option_text(" ");
+  addArgument(*command, "SHELL", *shell, "bash, zsh or fish")->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->callback([&app, shell] { std::cout << makeCompletion(*shell, describe(app)); });
 }
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "framework/estimation/folds.hpp"
 #include "framework/estimation/surrogate/cross_validation.hpp"
 
 namespace twinmap {
@@ -13,12 +13,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-std::vector<Index> listRange(Index first, Index count) {
-  std::vector<Index> listed(static_cast<std::size_t>(count));
-  std::iota(listed.begin(), listed.end(), first);
-  return listed;
-}
 
 VectorXd calcMeanErrors(const MatrixXd& mean, const MatrixXd& truth) {
   return (mean - truth).cwiseAbs().rowwise().mean();
@@ -30,10 +24,8 @@ SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples
                                   const ForwardSamples& forward, const ForwardChoices& choices,
                                   const HeldOut& held_out, const TrainingControl& control) {
   constexpr Index kMaxInferred = 200;
-  constexpr double kShareOfAFold = 0.8;
   const Index n = samples.points.cols(), half = n / 2, known = samples.points.rows() - whole.unknown;
-  constexpr Index kMin = 20;  // as findSurrogateObstacle() has it
-  if (half < kMin + 2 * samples.points.rows()) {
+  if (half < countLeastSimulations(samples.points.rows())) {
     return {};
   }
   const Surrogate fitted =
@@ -45,7 +37,8 @@ SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples
   const MatrixXd truth = held_out.truth(Eigen::all, others);
   const VectorXd of_half = calcMeanErrors(found.mean, truth);
   const VectorXd of_folds = calcMeanErrors(held_out.predictions.mean(Eigen::all, others), truth);
-  const double doublings = std::log2(kShareOfAFold * static_cast<double>(n) / static_cast<double>(half));
+  const double doublings =
+      std::log2((1.0 - 1.0 / kFolds) * static_cast<double>(n) / static_cast<double>(half));
   return {half, n, of_folds.cwiseQuotient(of_half).array().pow(1.0 / doublings)};
 }
 

@@ -9,6 +9,7 @@
 #include "framework/estimation/surrogate/cross_validation.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/surrogate/predicted_limit.hpp"
+#include "framework/experiment/inverse_map_spec.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -19,24 +20,23 @@ using Eigen::MatrixXd;
 
 /// No more than an exact process is worth: the time grows with their number cubed.
 SurrogateSamples takeFirst(const SurrogateSamples& samples) {
-  constexpr Index kMax = 2000;
-  const Index n = samples.points.cols();
-  if (n <= kMax) {
+  const Index n = samples.points.cols(), most = NetworkMapSpec::kMaxOfSurrogate;
+  if (n <= most) {
     return samples;
   }
   SurrogateSamples first{samples.infos,
-                         samples.points.leftCols(kMax),
-                         samples.clean_features.leftCols(kMax),
+                         samples.points.leftCols(most),
+                         samples.clean_features.leftCols(most),
                          samples.noise_covariance,
                          MatrixXd(samples.measured.rows(), 0),
                          samples.slopes};
   if (!first.slopes.empty()) {
-    first.slopes.resize(kMax);
+    first.slopes.resize(most);
   }
   const Index draws = samples.measured.cols() / n;
-  first.measured.resize(samples.measured.rows(), kMax * draws);
+  first.measured.resize(samples.measured.rows(), most * draws);
   for (Index draw = 0; draw < draws; ++draw) {
-    first.measured.middleCols(draw * kMax, kMax) = samples.measured.middleCols(draw * n, kMax);
+    first.measured.middleCols(draw * most, most) = samples.measured.middleCols(draw * n, most);
   }
   return first;
 }
@@ -75,8 +75,7 @@ std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateVal
 
 std::string findSurrogateObstacle(const ModelSpec& model, Index simulations,
                                   const NoiseCovariance& noise_covariance) {
-  constexpr Index kMin = 20;  // five folds of which are a cross-validation
-  if (simulations < kMin + 2 * static_cast<Index>(collectSampled(model).size())) {
+  if (simulations < countLeastSimulations(static_cast<Index>(collectSampled(model).size()))) {
     return "a surrogate needs at least 20 training samples, and two a parameter more";
   }
   return noise_covariance.diagonal().minCoeff() > 0.0 ? "" : "the noise of a feature is 0";

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "framework/data/features/noise_covariance.hpp"
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/surrogate/simulation_gain.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "framework/estimation/surrogate/surrogate_samples.hpp"
-#include "framework/estimation/training_control.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {

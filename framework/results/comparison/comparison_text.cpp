@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "framework/base/json/json.hpp"
@@ -41,8 +40,7 @@ std::vector<Row> makeFigureRows(const RunComparison& comparison) {
 std::string describeIntervals(const RunComparison& comparison) {
   const std::string intervals =
       "from, to: 95 % bootstrap interval of B - A (BCa, 10000 resamples) over the test samples; * where it "
-      "does "
-      "not contain 0.\n";
+      "does not contain 0.\n";
   if (comparison.paired) {
     return intervals + fmt::format("Both inferred the same {} test samples: the intervals are of pairs.\n",
                                    comparison.samples_a);

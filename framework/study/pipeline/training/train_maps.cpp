@@ -14,7 +14,6 @@
 #include "framework/estimation/surrogate/online_surrogate.hpp"
 #include "framework/estimation/surrogate/train_surrogate.hpp"
 #include "framework/study/pipeline/training/fit_online.hpp"
-#include "framework/study/pipeline/training/train_surrogate_map.hpp"
 
 namespace twinmap {
 namespace {
