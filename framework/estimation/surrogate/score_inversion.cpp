@@ -172,8 +172,7 @@ bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& desc
 
 namespace {
 
-constexpr double kApart = 0.05;  // in half widths: nearer minima are the same
-constexpr double kGain = 0.01;   // a step of a tenth of a standard deviation: the linear model tells the rest
+constexpr double kGain = 0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
 
 }  // namespace
 
@@ -230,9 +229,9 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
 
 std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::vector<VectorXd>& starts) {
   constexpr int kFirstSteps = 3, kSteps = 12;
-  constexpr int kWithAllScores = 2;   // after which the better metric moves little
-  constexpr double kOnTheWay = 0.15;  // in half widths, before the first steps were done
-  constexpr double kHopeless = 30.0;  // e^-15 of the evidence, and errors of the rough metric
+  constexpr int kWithAllScores = 2;                  // after which the better metric moves little
+  constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
+  constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric
   std::vector<Minimum> minima;
   const auto is_apart = [&](const VectorXd& point, double distance) {
     return std::all_of(minima.begin(), minima.end(), [&](const Minimum& other) {
@@ -350,9 +349,10 @@ void ScoreInversion::keepModes(const std::vector<Minimum>& minima, const std::ve
 
 /// Whether the better metric made a minimum one with an earlier one.
 bool ScoreInversion::hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index) {
+  constexpr double kSame = 0.02;  // in half widths
   return std::any_of(minima.begin(), minima.begin() + static_cast<std::ptrdiff_t>(index),
                      [&](const Minimum& other) {
-                       return (other.point - minima[index].point).cwiseAbs().maxCoeff() < kApart;
+                       return (other.point - minima[index].point).cwiseAbs().maxCoeff() < kSame;
                      });
 }
 
