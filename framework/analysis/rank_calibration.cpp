@@ -4,7 +4,7 @@
 #include <cassert>
 
 #include "framework/estimation/estimate.hpp"
-#include "framework/estimation/trained/rank_record.hpp"
+#include "framework/estimation/trained/test_records.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

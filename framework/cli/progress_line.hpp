@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "framework/base/log/progress.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/base/log/search_line.hpp"
 
 namespace twinmap::cli {

@@ -1,7 +1,6 @@
 #include "framework/estimation/bounded_draws.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "kernels/linalg/decompositions.hpp"

@@ -123,4 +123,22 @@ IntervalFactors calcIntervalFactors(const Estimates& estimates, const Eigen::Mat
 /// The correlation matrix of a covariance (p x p, positive diagonal).
 Eigen::MatrixXd calcCorrelation(const Eigen::MatrixXd& covariance);
 
+/// Correlation matrix R (p x p) of standardised residuals z (p x n) of mean zero:
+///   R_ij = sum z_i z_j / sqrt(sum z_i^2 sum z_j^2).
+/// With fewer samples than parameters, or residuals that depend on each other linearly, that is singular: it
+/// is then shrunk towards the identity, (1 - w) R + w I, by the least w that lifts its least eigenvalue to
+/// 1e-6. So it is always positive definite, its diagonal 1. A parameter whose residuals are all 0 is
+/// uncorrelated with the others. O(p^2 n).
+Eigen::MatrixXd calcResidualCorrelation(const Eigen::MatrixXd& standardised_residuals);
+
+/// With more than this share of the standard deviation that was there before, a parameter is hardly better
+/// known.
+constexpr double kUninformativeShare = 0.9;
+
+/// Whether one of the parameters is hardly better known than before. Both of one size and unit.
+inline bool isUninformative(const Eigen::Ref<const Eigen::VectorXd>& stddev,
+                            const Eigen::Ref<const Eigen::VectorXd>& prior_stddev) {
+  return (stddev.array() > kUninformativeShare * prior_stddev.array()).any();
+}
+
 }  // namespace twinmap

@@ -1,6 +1,5 @@
 #include "framework/estimation/estimator.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "framework/estimation/run_tasks.hpp"
@@ -25,17 +24,15 @@ Estimates Estimator::predict(const Eigen::Ref<const MatrixXd>& features,
       (countKnown() > 0 && known.cols() != features.cols())) {
     throw std::invalid_argument("features or known inputs are of other sizes than the map's");
   }
-  constexpr Index kBlock = 64;  // columns that share buffers
   const Index count = features.cols(), parameters = getResidualCorrelation().rows();
   Estimates all{MatrixXd(parameters, count), MatrixXd(parameters, count)};
   all.correlations.resize(givesCorrelations() ? static_cast<std::size_t>(count) : 0);
   all.mixtures.resize(givesMixtures() ? static_cast<std::size_t>(count) : 0);
   all.interval_factors = replicate(getIntervalFactors(), count);
-  runTasks(threads, static_cast<std::size_t>((count + kBlock - 1) / kBlock), [&](std::size_t block) {
+  runChunks(threads, count, [&](Index first, Index end) {
     const std::unique_ptr<Workspace> workspace = makeWorkspace();
     VectorXd settings(known.rows());
-    const Index first = static_cast<Index>(block) * kBlock;
-    for (Index i = first; i < std::min(count, first + kBlock); ++i) {
+    for (Index i = first; i < end; ++i) {
       if (settings.size() > 0) {
         settings = known.col(i);
       }

@@ -73,7 +73,7 @@ class Estimator {
   /// What the inferences' inputs are for features (d x n) and known inputs (q x n).
   virtual Eigen::MatrixXd makeInputs(const Eigen::MatrixXd& features, const Eigen::MatrixXd& known) const = 0;
 
-  /// Writes all that loading needs below `group` of maps.h5 (estimator_kinds.hpp).
+  /// Writes all that loading needs below `group` of maps.h5 (trained_file.hpp).
   virtual void save(Hdf5Writer& file, const std::string& group) const = 0;
 
   /// Mean, standard deviation (p x n) and, where they differ between measurements, correlations for features

@@ -1,5 +1,8 @@
 #include "framework/estimation/folds.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -20,6 +23,17 @@ std::vector<Index> listKept(Index count, Index folds, Index fold) {
     }
   }
   return listed;
+}
+
+std::vector<Index> listRange(Index first, Index count) {
+  std::vector<Index> listed(static_cast<std::size_t>(count));
+  std::iota(listed.begin(), listed.end(), first);
+  return listed;
+}
+
+Index countDraws(Index samples, Index columns) {
+  constexpr Index kMost = 4;
+  return std::clamp<Index>(columns / samples, 1, kMost);
 }
 
 }  // namespace twinmap

@@ -6,9 +6,7 @@
 namespace twinmap {
 
 /// The 50 %, 68 % and 95 % intervals of a normal distribution are mean +- so many standard deviations.
-constexpr double kNormal50 = 0.674489750196082;
-constexpr double kNormal68 = 0.994457883209753;
-constexpr double kNormal95 = 1.959963984540054;
+constexpr double kNormal50 = 0.674489750196082, kNormal68 = 0.994457883209753, kNormal95 = 1.959963984540054;
 
 /// Half widths of a parameter's intervals of 50 % and 95 % in standard deviations: conformal ones, sized by
 /// held-out errors, where these are not normal.
@@ -64,5 +62,18 @@ double calcConformalQuantile(const Eigen::VectorXd& sorted, double probability);
 /// estimates, of which there may be fewer than depths. Else quantiles only add chance; how wide errors are is
 /// known by the factor of standard deviations, with its own caution.
 IntervalFactor calcIntervalFactor(const Eigen::VectorXd& depths, double samples);
+
+/// The factor by which standard deviations must be multiplied so that both the 95 % and the 68 % interval
+/// hold, from the absolute errors of samples that took no part in the training, each over its standard
+/// deviation: the larger of the two conformal quantiles, each over that of the normal distribution. Below 1
+/// only where the quantiles' upper confidence limits (97.5 %) are, and then the larger of these: claiming
+/// less than the map does must be beyond doubt. More than 2000 samples leave little doubt: of errors with
+/// heavier tails than normal ones, 50 % intervals would hold too much then, and the factor is one by which
+/// 50 % intervals hold as much too much as 95 % intervals too little, the latter counting twice. Errors with
+/// lighter tails keep the factor of the 68 % interval.
+double calcStddevScale(const Eigen::VectorXd& absolute_z);
+
+/// Geometric mean of each row of standard deviations.
+Eigen::VectorXd calcTypicalStddev(const Eigen::MatrixXd& stddev);
 
 }  // namespace twinmap

@@ -25,7 +25,7 @@ double calcNormalProbability(double z) {
   return 0.5 * std::erfc(-z * constants::one_div_root_two<double>());
 }
 
-constexpr int kExactly = 45;  // halvings of a tenth of a standard deviation
+constexpr int kExactly = 45, kRoughly = 32;  // halvings of a tenth of a standard deviation
 
 /// Values between which the density is monotonous, or nearly: those of every component's own scale.
 std::vector<double> listScale(const MarginalMixture& marginal) {
@@ -206,10 +206,9 @@ Intervals findAbove(const MarginalMixture& marginal, double level) {
 }
 
 Intervals findHighestDensity(const MarginalMixture& marginal, double probability) {
-  constexpr int kHalvings = 45, kRoughly = 32;
   const LevelSets sets(marginal);
   double below = 0.0, above = sets.getHighest();
-  for (int i = 0; i < kHalvings; ++i) {
+  for (int i = 0; i < kExactly; ++i) {
     const double middle = 0.5 * (below + above);
     const double found = calcProbability(marginal, sets.findAbove(middle, kRoughly));
     (found > probability ? below : above) = middle;

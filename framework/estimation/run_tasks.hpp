@@ -5,6 +5,7 @@
 #include <exception>
 #include <vector>
 
+#include "kernels/gp/stop.hpp"
 #include "kernels/linalg/parallel.hpp"
 
 namespace twinmap {
@@ -28,5 +29,21 @@ void runTasks(int threads, std::size_t count, const Action& action) {
     }
   }
 }
+
+/// Runs action(first, end) for all indices below `count`, some at a time, which may share buffers.
+template <typename Action>
+void runChunks(int threads, Eigen::Index count, const Action& action) {
+  constexpr Eigen::Index kChunk = 16;
+  runTasks(threads, static_cast<std::size_t>((count + kChunk - 1) / kChunk), [&](std::size_t chunk) {
+    const Eigen::Index first = static_cast<Eigen::Index>(chunk) * kChunk;
+    action(first, std::min(count, first + kChunk));
+  });
+}
+
+/// How a training runs. A training that ends gives the same result for any of it.
+struct TrainingControl {
+  int threads = 1;
+  gp::StopFlag stop = nullptr;  ///< once true, the training ends with gp::Stopped
+};
 
 }  // namespace twinmap

@@ -7,7 +7,7 @@
 
 #include "framework/analysis/identifiability.hpp"
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/base/text/csv.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"

@@ -6,7 +6,7 @@
 
 #include "framework/analysis/identifiability.hpp"
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/data/noise/feature_noise.hpp"

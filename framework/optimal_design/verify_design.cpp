@@ -3,7 +3,7 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/files/resolve_defaults.hpp"
-#include "framework/results/comparison/comparison_text.hpp"
+#include "framework/results/comparison_text.hpp"
 #include "framework/study/pipeline/run_experiment.hpp"
 
 namespace twinmap::experiment_design {

@@ -3,8 +3,8 @@
 
 #include <mutex>
 
-#include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/data/reduction/response_reduction.hpp"
 #include "framework/python/bindings.hpp"
 #include "framework/python/interruptible.hpp"

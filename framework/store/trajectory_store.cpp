@@ -7,7 +7,6 @@
 #include <numeric>
 #include <set>
 #include <string_view>
-#include <unordered_set>
 
 #include "framework/base/files/atomic_file.hpp"
 

@@ -1,6 +1,5 @@
 #include "kernels/gp/gaussian_process.hpp"
 
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 

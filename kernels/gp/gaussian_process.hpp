@@ -29,7 +29,6 @@ struct Prediction {
   /// The standard deviation to report with an inferred parameter: that of the parameter given the features,
   /// sqrt(variance). The likelihood's noise belongs to it, since it stands for what the features cannot tell.
   Eigen::VectorXd stddev() const { return variance.cwiseSqrt(); }
-  Eigen::VectorXd calcLatentStddev() const { return latent_variance.cwiseSqrt(); }
 };
 
 /// A fitted Gaussian process; immutable. At a point x, with k = cov(f(X), f(x)) and v = L^-1 k (Rasmussen and

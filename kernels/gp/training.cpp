@@ -1,6 +1,5 @@
 #include "kernels/gp/training.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>

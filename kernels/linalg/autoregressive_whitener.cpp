@@ -1,6 +1,5 @@
 #include "kernels/linalg/autoregressive_whitener.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "kernels/linalg/autocorrelation.hpp"

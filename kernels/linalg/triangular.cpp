@@ -3,7 +3,6 @@
 #include "kernels/linalg/triangular.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 
 #include "kernels/linalg/packet.hpp"

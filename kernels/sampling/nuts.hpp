@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <vector>
 
 #include "kernels/gp/stop.hpp"
 

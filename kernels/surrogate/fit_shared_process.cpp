@@ -1,7 +1,6 @@
 #include "kernels/surrogate/fit_shared_process.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "kernels/gp/optimizer.hpp"
@@ -17,7 +16,6 @@ using Eigen::VectorXd;
 namespace {
 
 // Few points tell length scales, and an evaluation costs their number cubed.
-constexpr Index kSearchPoints = 300;
 // Of variables within [-1, 1]: below, nothing is learnt between points; above, a process is a polynomial,
 // which the trend is already, and K singular.
 constexpr double kShortest = 0.2, kLongest = 6.0;

@@ -7,6 +7,9 @@
 
 namespace twinmap::gp {
 
+/// A search takes no more points than these.
+inline constexpr Eigen::Index kSearchPoints = 300;
+
 /// Structure and numbers that predict points left out best.
 struct SharedChoice {
   SharedStructure structure;

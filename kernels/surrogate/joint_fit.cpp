@@ -1,7 +1,5 @@
 #include "kernels/surrogate/joint_fit.hpp"
 
-#include <vector>
-
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/triangular.hpp"
 

@@ -32,8 +32,6 @@ class LeftOutDensity {
   bool evaluate(const SharedHyperparameters& hyperparameters, double& negative_log_density);
 
   const LeftOut& getLeftOut() const { return left_out_; }
-  /// P, n x n.
-  const Eigen::MatrixXd& getPrecision() const { return precision_; }
 
  private:
   bool calcPrecision(const SharedHyperparameters& hyperparameters);

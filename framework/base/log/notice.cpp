@@ -23,8 +23,7 @@ const std::vector<NoticeText> kStatuses{
     {Notice::kMissingTerm, "missing_term", true, kMisleading, "{0} may be missing ({1}): {2}",
      "Ask what the model lacks: twinmap diagnose FILE RECORDINGS.",
      "Noise explains the measurement, but a term that the model lacks explains it better, and parameters "
-     "stand "
-     "in for it."},
+     "stand in for it."},
     {Notice::kOutsideTraining, "outside_training", true, kMisleading,
      "the features are {0:.2g} times as far from the training samples as any simulated measurement",
      "Widen the bounds and train again: here the estimator extrapolates.",
@@ -205,8 +204,7 @@ const std::vector<NoticeText> kTraining{
      "Lower inverse_map.network.learning_rate.", "Steps were too large for a strongly nonlinear response."},
     {Notice::kChains, "chains", false, kDegraded,
      "the chains of the network's weights have not converged: R-hat {0:.3f}, {1:.0f} effective draws, "
-     "{2:.1f} % "
-     "divergent",
+     "{2:.1f} % divergent",
      "Take more draws: inverse_map.network.draws.", "The posterior of the weights is hard to explore."},
     {Notice::kShape, "shape", false, kDegraded,
      "{0}: {1:.0f} % intervals contain {2:.0f} % of the left-out samples; the estimates are not {3}",
@@ -229,8 +227,7 @@ const std::vector<NoticeText> kTraining{
     {Notice::kPosteriorsUncalibrated, "posteriors_uncalibrated", false, kDegraded,
      "posteriors are not calibrated: {0}", "Look at the histograms of sbc.csv.",
      "The ranks of the true values among the draws are not uniform: the posteriors are biased or of the "
-     "wrong "
-     "width."},
+     "wrong width."},
     {Notice::kNoCalibration, "no_calibration", false, kInfo,
      "the calibration of posteriors is not tested: {0}",
      "Leave out evaluation.calibration, or set 'inverse_map: surrogate' or 'none'.",

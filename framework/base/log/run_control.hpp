@@ -1,11 +1,30 @@
 #pragma once
 
 #include <atomic>
-
-#include "framework/base/log/interrupted.hpp"
-#include "framework/base/log/progress.hpp"
+#include <functional>
+#include <stdexcept>
+#include <string>
 
 namespace twinmap {
+
+/// A run that was asked to stop (RunControl::stop): what was finished has been written.
+class Interrupted : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// How far a stage of a run is.
+struct Progress {
+  std::string stage;  ///< "simulate", "cases"
+  int done = 0;       ///< samples or cases, failed ones included
+  int total = 0;
+  int failed = 0;
+  double work = 0.0;       ///< fraction of the stage's work that is done; cases differ in size
+  bool simulates = false;  ///< done counts simulations
+};
+
+/// Called from any thread, one call at a time.
+using ProgressCallback = std::function<void(const Progress&)>;
 
 /// What every stage of a run obeys and reports to.
 struct RunControl {

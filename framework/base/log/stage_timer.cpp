@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include "framework/base/log/log.hpp"
-
 namespace twinmap {
 
 void noteStage(const std::string& name, std::chrono::steady_clock::duration elapsed, StageNotes& notes) {

@@ -1,7 +1,5 @@
 #include "framework/base/text/text_tables.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 
 namespace twinmap {

@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "framework/cli/commands/commands.hpp"
-#include "framework/results/comparison/comparison_text.hpp"
+#include "framework/results/comparison_text.hpp"
 
 namespace twinmap::cli {
 

@@ -1,8 +1,8 @@
 
 #include <iostream>
 
-#include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"

@@ -3,9 +3,9 @@
 #include <iostream>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
 #include "framework/base/log/notice.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
@@ -48,10 +48,9 @@ void runSingle(const ExperimentSpec& given, const RunArguments& arguments, const
   line.clear();
   std::cout << makeMarkdownTable(summary);
   if (!arguments.quiet) {
-    std::cerr
-        << "Bias, sd and MARE: mean, standard deviation and mean absolute value of the relative errors of "
-           "the test samples.\ncov.: true values within the interval. limit: smallest sd that the noise "
-           "permits. (..): standard error of the last digits.\n";
+    std::cerr << "Bias, sd and MARE: mean, standard deviation and mean absolute value of the relative errors "
+                 "of the test samples.\ncov.: true values within the interval. limit: smallest sd that the "
+                 "noise permits. (..): standard error of the last digits.\n";
   }
   for (const std::string& warning : collectWarnings(summary)) {
     std::cerr << "twinmap: " << (isRemark(warning) ? "" : "warning: ") << warning << "\n";

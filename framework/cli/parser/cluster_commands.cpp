@@ -16,20 +16,15 @@ void addSubmit(CLI::App& app, const Invocation& invocation) {
   addWhereAndHow(*command, arguments->run, invocation);
   addOn(*command, *arguments)->required();
   addJobs(*command, *arguments);
-  command->add_option("--partition", arguments->partition, "Of Slurm")->type_name("NAME");
-  command->add_option("--account", arguments->account, "Of Slurm")->type_name("NAME");
-  command->add_option("--sbatch", arguments->sbatch, "Further options of Slurm's sbatch: gres=gpu:1")
-      ->type_name("KEY=VALUE");
-  command
-      ->add_option(
-          "--submit", arguments->submit,
-          "Of a template: submits a shard and prints its job; {script}, {shard}, {name} and {after} are "
-          "replaced")
-      ->type_name("COMMAND");
-  command
-      ->add_option("--after", arguments->after,
-                   "Of a template: what {after} stands for where a job waits for others, {jobs}")
-      ->type_name("OPTION");
+  addOption(*command, "--partition", "NAME", arguments->partition, "Of Slurm");
+  addOption(*command, "--account", "NAME", arguments->account, "Of Slurm");
+  addOption(*command, "--sbatch", "KEY=VALUE", arguments->sbatch,
+            "Further options of Slurm's sbatch: gres=gpu:1");
+  addOption(*command, "--submit", "COMMAND", arguments->submit,
+            "Of a template: submits a shard and prints its job; {script}, {shard}, {name} and {after} are "
+            "replaced");
+  addOption(*command, "--after", "OPTION", arguments->after,
+            "Of a template: what {after} stands for where a job waits for others, {jobs}");
   command->callback([arguments] { submit(*arguments); });
 }
 
@@ -38,8 +33,8 @@ void addShard(CLI::App& app, const Invocation& invocation) {
   arguments->threads = invocation.threads;
   arguments->command_line = invocation.line;
   CLI::App* command = app.add_subcommand("shard", "Do one job of what was submitted");
-  command->add_option("DIR", arguments->folder, "Folder of the results")->required()->option_text(" ");
-  command->add_option("N", arguments->shard, "Number of the shard")->required()->option_text(" ");
+  addArgument(*command, "DIR", arguments->folder, "Folder of the results");
+  addArgument(*command, "N", arguments->shard, "Number of the shard");
   addThreads(*command, arguments->threads);
   command->callback([arguments] { runShard(*arguments); });
 }
@@ -47,7 +42,7 @@ void addShard(CLI::App& app, const Invocation& invocation) {
 void addCancel(CLI::App& app) {
   const auto folder = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("cancel", "Cancel the jobs of what was submitted");
-  command->add_option("DIR", *folder, "Folder of the results")->required()->option_text(" ");
+  addArgument(*command, "DIR", *folder, "Folder of the results");
   command->callback([folder] { cancel(*folder); });
 }
 

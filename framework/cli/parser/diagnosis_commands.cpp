@@ -12,16 +12,9 @@
 namespace twinmap::cli {
 namespace {
 
-void addKnown(CLI::App& command, std::vector<std::string>& known) {
-  command.add_option("--set", known, "Value of a known input of the set-up; for each of them")
-      ->type_name("NAME=VALUE");
-}
-
 void addStarts(CLI::App& command, std::vector<double>& starts) {
-  command
-      .add_option("--start", starts,
-                  "Time in the file (s) at which the model's time is 0; several are several windows")
-      ->type_name("S");
+  addOption(command, "--start", "S", starts,
+            "Time in the file (s) at which the model's time is 0; several are several windows");
 }
 
 /// Not in the help: says what to do instead, before anything is said to be missing.
@@ -41,39 +34,27 @@ void addDiagnose(CLI::App& app) {
   CLI::App* command = app.add_subcommand("diagnose", "Say what a model lacks to explain measurements");
   command->footer(
       "Tests friction, springs, masses, hysteresis, hidden modes, sensors and signals, and fits the best. "
-      "Without measurements "
-      "it prints which of them would go unnoticed.");
-  command
-      ->add_option("RUN", arguments->run,
-                   "Folder of a finished run, its maps.h5, or an experiment file (YAML)")
-      ->required()
-      ->option_text(" ");
+      "Without measurements it prints which of them would go unnoticed.");
+  addArgument(*command, "RUN", arguments->run,
+              "Folder of a finished run, its maps.h5, or an experiment file (YAML)");
   command
       ->add_option("MEASUREMENT", arguments->files,
                    "Files of one machine, explained together: CSV, MATLAB or HDF5, as infer takes them")
       ->option_text(" ");
-  command
-      ->add_option(
-          "--trial", arguments->trials,
-          "A recording of one of the experiment's trials, in the place of MEASUREMENT; all of them are "
-          "explained together")
-      ->type_name("NAME=FILE")
+  addOption(*command, "--trial", "NAME=FILE", arguments->trials,
+            "A recording of one of the experiment's trials, in the place of MEASUREMENT; all of them are "
+            "explained together")
       ->allow_extra_args(false);
   addKnown(*command, arguments->known);
   addStarts(*command, arguments->starts);
-  command
-      ->add_option("--accept", arguments->accepted,
-                   "Take these terms, one after the other, instead of those that are found; see --out")
-      ->type_name("TERM,...")
+  addOption(*command, "--accept", "TERM,...", arguments->accepted,
+            "Take these terms, one after the other, instead of those that are found; see --out")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--out", arguments->out, "File for the corrected experiment (YAML)")->type_name("FILE");
-  command
-      ->add_option(
-          "--page", arguments->page,
-          "File for a page (HTML) that draws the residuals and the unknown forces over speed, position "
-          "and time")
-      ->type_name("FILE");
+  addOption(*command, "--out", "FILE", arguments->out, "File for the corrected experiment (YAML)");
+  addOption(
+      *command, "--page", "FILE", arguments->page,
+      "File for a page (HTML) that draws the residuals and the unknown forces over speed, position and time");
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments->json, "Print a line of JSON")->excludes(csv);
   addThreads(*command, arguments->threads);
@@ -88,32 +69,22 @@ void addValidate(CLI::App& app) {
       "Holds the machine's parameters, fits what each recording leaves unknown besides, and compares the "
       "residual with the noise and with that of the nominal parameters. The exit status is 3 where a "
       "prediction fails.");
-  command
-      ->add_option("RUN", arguments->run,
-                   "Folder of a finished run, its maps.h5, or an experiment file (YAML)")
-      ->required()
-      ->option_text(" ");
-  command
-      ->add_option(
-          "MEASUREMENT", arguments->files,
-          "Files of one machine, to infer its parameters from (with --with, the size of unknown noise)")
-      ->option_text(" ");
-  command
-      ->add_option("--with", arguments->stated,
-                   "Predict by these values of all parameters, as others state them: M=95.11,Fv=203.5")
-      ->delimiter(',')
-      ->type_name("NAME=VALUE,...");
-  command->add_option("--against", arguments->against, "Files to predict")->required()->type_name("FILE");
+  addArgument(*command, "RUN", arguments->run,
+              "Folder of a finished run, its maps.h5, or an experiment file (YAML)");
+  addArgument(*command, "MEASUREMENT", arguments->files,
+              "Files of one machine, to infer its parameters from (with --with, the size of unknown noise)")
+      ->required(false);
+  addOption(*command, "--with", "NAME=VALUE,...", arguments->stated,
+            "Predict by these values of all parameters, as others state them: M=95.11,Fv=203.5")
+      ->delimiter(',');
+  addOption(*command, "--against", "FILE", arguments->against, "Files to predict")->required();
   addKnown(*command, arguments->known);
   addStarts(*command, arguments->starts);
-  command->add_option("--against-start", arguments->against_starts, "The same of the files to predict")
-      ->type_name("S");
-  command
-      ->add_option("--max-rms", arguments->max_rms,
-                   "Pass up to this rms residual, in noise standard deviations (default: what noise and the "
-                   "parameters' sd leave in 99 % of predictions)")
-      ->check(makePositiveCheck())
-      ->type_name("R");
+  addOption(*command, "--against-start", "S", arguments->against_starts, "The same of the files to predict");
+  addOption(*command, "--max-rms", "R", arguments->max_rms,
+            "Pass up to this rms residual, in noise standard deviations (default: what noise and the "
+            "parameters' sd leave in 99 % of predictions)")
+      ->check(makePositiveCheck());
   command->add_flag("--json", arguments->json, "Print a line of JSON");
   refuseTrials(*command);
   addThreads(*command, arguments->threads);
@@ -126,9 +97,7 @@ void addSelect(CLI::App& app) {
   command->footer(
       "Prints the evidence of each experiment, relative to the best, and how well it predicts what it is not "
       "fitted to: each recording by the others, or the last third of a single one.");
-  command->add_option("FILE", arguments->files, "Experiment files (YAML), then files of measurements")
-      ->required()
-      ->option_text(" ");
+  addArgument(*command, "FILE", arguments->files, "Experiment files (YAML), then files of measurements");
   addKnown(*command, arguments->known);
   addStarts(*command, arguments->starts);
   command->add_flag("--json", arguments->json, "Print a line of JSON");

@@ -27,8 +27,7 @@ void addSimulate(CLI::App& app) {
       "Prints the outputs at the times of the features, and the modes, as CSV. Parameters are at the centre "
       "of their bounds unless given: parameters.NAME=VALUE, nuisance.NAME=VALUE, inputs.NAME=VALUE.");
   addExperiment(*command, arguments->experiment);
-  command->add_option("--csv", arguments->csv, "Write to this file instead of the standard output")
-      ->type_name("OUT");
+  addOption(*command, "--csv", "OUT", arguments->csv, "Write to this file instead of the standard output");
   command->add_flag("--noise", arguments->noise, "Add the experiment's measurement noise");
   command->callback([arguments] { simulate(*arguments); });
 }
@@ -47,10 +46,9 @@ void addRun(CLI::App& app, const Invocation& invocation) {
       ->excludes(fail_fast);
   addFailOnGates(*command, arguments->fail_on_gates);
   command->add_flag("--quiet", arguments->quiet, "No progress, only warnings and errors");
-  command->add_flag(
-      "--features-only", arguments->features_only,
-      "Simulate, write the points and noisy features of all samples to features.h5, and train nothing; "
-      "memory does not grow with the samples");
+  command->add_flag("--features-only", arguments->features_only,
+                    "Simulate, write the points and noisy features of all samples to features.h5, and train "
+                    "nothing; memory does not grow with the samples");
   command->callback([arguments] { run(*arguments); });
 }
 
@@ -75,17 +73,14 @@ void addDesign(CLI::App& app, const Invocation& invocation) {
       "excitation: chooses the free values of the signals (design.excitation) within limits. sensors: "
       "chooses which outputs to measure, and when (design.sensors). Writes designed.yaml, tables, the "
       "signals as CSV and a page of what is gained.");
-  command->add_option("WHAT", arguments->what, "excitation or sensors")
-      ->required()
-      ->check(CLI::IsMember({"excitation", "sensors"}))
-      ->option_text(" ");
+  addArgument(*command, "WHAT", arguments->what, "excitation or sensors")
+      ->check(CLI::IsMember({"excitation", "sensors"}));
   addExperiment(*command, arguments->experiment);
-  command->add_option("--out", arguments->folder, "Folder for the results (default: results/NAME_design)")
-      ->type_name("DIR");
-  command->add_flag(
-      "--verify", arguments->verify,
-      "Train maps on the experiment before and after, with as many simulations, and compare what "
-      "they infer of held-out samples");
+  addOption(*command, "--out", "DIR", arguments->folder,
+            "Folder for the results (default: results/NAME_design)");
+  command->add_flag("--verify", arguments->verify,
+                    "Train maps on the experiment before and after, with as many simulations, and compare "
+                    "what they infer of held-out samples");
   addThreads(*command, arguments->threads);
   command->callback([arguments] {
     arguments->what == "sensors" ? designSensors(*arguments) : designExcitation(*arguments);

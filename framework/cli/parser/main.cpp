@@ -2,18 +2,20 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <twinmap/build_info.hpp>
 #include <utility>
 #include <vector>
 
-#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/log.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/commands.hpp"
-#include "framework/cli/log.hpp"
 #include "framework/cli/parser/command_groups.hpp"
+#include "framework/cli/progress_line.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/models/fmu/worker.hpp"
 #include "framework/simulation/simulator_team.hpp"
@@ -26,6 +28,14 @@ constexpr int kFailed = 1;
 constexpr int kWrongInput = 2;
 constexpr int kGatesFailed = 3;
 constexpr int kInterrupted = 128;  // plus the signal's number, as shells say it
+
+/// The log goes to stderr, in colour on a terminal unless NO_COLOR is set.
+void setUpLog() {
+  const char* no_color = std::getenv("NO_COLOR");
+  const bool plain = no_color != nullptr && no_color[0] != '\0';
+  const std::string over_progress = cli::isTerminal() ? "\r\x1b[K" : "";
+  twinmap::logToStderr(over_progress, !plain);
+}
 
 std::string joinArguments(int count, char** arguments) {
   std::string line = "twinmap";
@@ -117,7 +127,7 @@ int main(int count, char** arguments) {
   if (count == 2 && std::string(arguments[1]) == twinmap::fmi::kWorkerArgument) {
     twinmap::fmi::runWorker();  // a process of this program itself, which no user starts
   }
-  cli::setUpLog();
+  setUpLog();
   try {
     return runCommand(count, arguments);
   } catch (const twinmap::ExperimentError& error) {

@@ -10,49 +10,35 @@ namespace {
 
 /// Recordings that are inferred together.
 void addJointInference(CLI::App& command, InferArguments& arguments) {
-  command
-      .add_option("--trial", arguments.trials,
-                  "A recording of one of the experiment's trials; all of them are inferred together, several "
-                  "of one trial are repeats")
-      ->type_name("NAME=FILE");
-  command.add_flag("--joint", arguments.joint,
-                   "Infer all files and --start together as recordings of one machine, and test whether they "
-                   "agree");
-  command
-      .add_option("--windows", arguments.windows,
-                  "Infer the windows of each file that begin every S seconds together, and test whether they "
-                  "agree")
-      ->type_name("S")
+  addOption(command, "--trial", "NAME=FILE", arguments.trials,
+            "A recording of one of the experiment's trials; all of them are inferred together, several of "
+            "one trial are repeats");
+  command.add_flag(
+      "--joint", arguments.joint,
+      "Infer all files and --start together as recordings of one machine, and test whether they agree");
+  addOption(command, "--windows", "S", arguments.windows,
+            "Infer the windows of each file that begin every S seconds together, and test whether they agree")
       ->check(makePositiveCheck());
-  command
-      .add_option(
-          "--segments", arguments.segments,
-          "Cut each file into segments of S seconds, each from an initial state of its own: for what is "
-          "unstable or chaotic")
-      ->type_name("S")
+  addOption(command, "--segments", "S", arguments.segments,
+            "Cut each file into segments of S seconds, each from an initial state of its own: for what is "
+            "unstable or chaotic")
       ->check(makePositiveCheck());
 }
 
 void addPosterior(CLI::App& command, InferArguments& arguments) {
-  CLI::Option* posterior = command.add_flag(
-      "--posterior{512}", arguments.posterior_draws,
-      "The posterior as well, without a normal approximation: quantiles, from so many draws weighted by "
-      "their likelihood on the simulator, or a surrogate's where that takes long; --posterior=2000 for more "
-      "than 512");
-  command
-      .add_option("--posterior-from", arguments.posterior_from,
-                  "What the posterior's likelihood is computed by: simulator or surrogate")
-      ->check(CLI::IsMember({"simulator", "surrogate"}))
-      ->type_name("SOURCE");
-  command.add_option("--draws", arguments.draws, "File for the posterior's joint draws (CSV)")
-      ->type_name("FILE")
+  CLI::Option* posterior =
+      command.add_flag("--posterior{512}", arguments.posterior_draws,
+                       "The posterior as well, without a normal approximation: quantiles, from so many draws "
+                       "weighted by their likelihood on the simulator, or a surrogate's where that takes "
+                       "long; --posterior=2000 for more than 512");
+  addOption(command, "--posterior-from", "SOURCE", arguments.posterior_from,
+            "What the posterior's likelihood is computed by: simulator or surrogate")
+      ->check(CLI::IsMember({"simulator", "surrogate"}));
+  addOption(command, "--draws", "FILE", arguments.draws, "File for the posterior's joint draws (CSV)")
       ->needs(posterior);
-  command
-      .add_option(
-          "--profile", arguments.profile,
-          "File for the profile likelihood of each parameter on the simulator (CSV): it is held at 13 "
-          "values, and the others are fitted anew")
-      ->type_name("FILE");
+  addOption(command, "--profile", "FILE", arguments.profile,
+            "File for the profile likelihood of each parameter on the simulator (CSV): it is held at 13 "
+            "values, and the others are fitted anew");
 }
 
 void addInfer(CLI::App& app) {
@@ -62,39 +48,29 @@ void addInfer(CLI::App& app) {
       "With a run, the trained estimator gives the estimate, refined on the simulator where that is cheap. "
       "With an experiment file alone, the posterior is sampled on the simulator. Prints mean, sd and 95 % "
       "interval of each parameter, and whether the model fits.");
-  command
-      ->add_option("RUN", arguments->run,
-                   "Folder of a finished run, its maps.h5, or an experiment file (YAML): without a run the "
-                   "posterior is sampled on the simulator")
-      ->required()
-      ->option_text(" ");
+  addArgument(*command, "RUN", arguments->run,
+              "Folder of a finished run, its maps.h5, or an experiment file (YAML): without a run the "
+              "posterior is sampled on the simulator");
   command
       ->add_option("MEASUREMENT", arguments->files,
                    "Files: CSV, MATLAB .mat or HDF5, with a column of times and one for each output")
       ->option_text(" ");
-  command->add_option("--set", arguments->known, "Value of a known input of the set-up; for each of them")
-      ->type_name("NAME=VALUE");
-  command
-      ->add_option("--start", arguments->starts,
-                   "Time in the file (s) at which the model's time is 0; several infer several windows")
-      ->type_name("S");
+  addKnown(*command, arguments->known);
+  addOption(*command, "--start", "S", arguments->starts,
+            "Time in the file (s) at which the model's time is 0; several infer several windows");
   addJointInference(*command, *arguments);
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments->json, "Print a line of JSON per measurement")->excludes(csv);
   command
-      ->add_flag(
-          "--follow", arguments->follow,
-          "Read CSV measurements one after another from the standard input, each ended by an empty line, "
-          "and print a line of JSON for each at once")
+      ->add_flag("--follow", arguments->follow,
+                 "Read CSV measurements one after another from the standard input, each ended by an empty "
+                 "line, and print a line of JSON for each at once")
       ->excludes(csv);
   addRefine(*command, arguments->refine);
   addPosterior(*command, *arguments);
-  command
-      ->add_option(
-          "--page", arguments->page,
-          "File for a page (HTML): measured over fitted, residuals and their spectrum, estimates within "
-          "their bounds; of several measurements the parameters over them")
-      ->type_name("FILE");
+  addOption(*command, "--page", "FILE", arguments->page,
+            "File for a page (HTML): measured over fitted, residuals and their spectrum, estimates within "
+            "their bounds; of several measurements the parameters over them");
   command
       ->add_flag("--diagnose", arguments->diagnose,
                  "Where the model does not fit, the whole table of what it may lack, as diagnose prints it")
@@ -111,56 +87,46 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
   command->footer(
       "Estimates the parameters, simulates the updated model, and writes tables and a page with the "
       "measured, nominal and updated responses and their residuals.");
-  command->add_option("RUN", arguments->run, "Folder of a finished run, its maps.h5, or an experiment file")
-      ->required()
-      ->option_text(" ");
-  command->add_option("MEASUREMENT", arguments->file, "File: CSV, MATLAB .mat or HDF5, as infer takes them")
-      ->required()
-      ->option_text(" ");
-  command->add_option("--start", arguments->start, "Time in the file (s) at which the model's time is 0")
-      ->type_name("S");
-  command
-      ->add_option("--from", arguments->from,
-                   "Infer the parameters from this measurement instead (default: the same file)")
-      ->type_name("FILE");
-  command->add_option("--from-start", arguments->from_start, "Where its window starts (default: as --start)")
-      ->type_name("S");
-  command->add_option("--set", arguments->known, "Value of a known input of the set-up; for each of them")
-      ->type_name("NAME=VALUE");
+  addArgument(*command, "RUN", arguments->run,
+              "Folder of a finished run, its maps.h5, or an experiment file");
+  addArgument(*command, "MEASUREMENT", arguments->file,
+              "File: CSV, MATLAB .mat or HDF5, as infer takes them");
+  addOption(*command, "--start", "S", arguments->start,
+            "Time in the file (s) at which the model's time is 0");
+  addOption(*command, "--from", "FILE", arguments->from,
+            "Infer the parameters from this measurement instead (default: the same file)");
+  addOption(*command, "--from-start", "S", arguments->from_start,
+            "Where its window starts (default: as --start)");
+  addKnown(*command, arguments->known);
   addRefine(*command, arguments->refine);
-  command
-      ->add_option("--draws", arguments->draws,
-                   "Simulations with parameters drawn from the estimate, for the band (default: 50)")
-      ->type_name("N")
+  addOption(*command, "--draws", "N", arguments->draws,
+            "Simulations with parameters drawn from the estimate, for the band (default: 50)")
       ->check(CLI::Range(kMinDraws, kMaxDraws));
   addThreads(*command, arguments->threads);
-  command
-      ->add_option("--out", arguments->out, "Folder for the results (default: RUN/replay/NAME of the file)")
-      ->type_name("DIR");
+  addOption(*command, "--out", "DIR", arguments->out,
+            "Folder for the results (default: RUN/replay/NAME of the file)");
   command->callback([arguments] { replay(*arguments); });
 }
 
 void addExport(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Write the trained estimator as C99, FMU or JSON");
-  command->add_option("RUN", arguments->run, "Folder of a finished run")->required()->option_text(" ");
-  command->add_option("--c", arguments->c_folder, "Folder for C sources with a self-test and README.md")
-      ->type_name("DIR");
+  addArgument(*command, "RUN", arguments->run, "Folder of a finished run");
+  addOption(*command, "--c", "DIR", arguments->c_folder,
+            "Folder for C sources with a self-test and README.md");
   CLI::Option* fmu = command->add_option("--fmu", arguments->fmu, "File for an FMU for Co-Simulation");
   fmu->type_name("FILE");
-  command->add_option("--fmi", arguments->fmi, "Version of the FMU: 2 or 3 (default: 3)")
-      ->type_name("N")
+  addOption(*command, "--fmi", "N", arguments->fmi, "Version of the FMU: 2 or 3 (default: 3)")
       ->check(CLI::IsMember({2, 3}))
       ->needs(fmu);
-  command->add_option("--json", arguments->json, "File for all numbers as JSON")->type_name("FILE");
+  addOption(*command, "--json", "FILE", arguments->json, "File for all numbers as JSON");
   command->add_flag("--float", arguments->single,
                     "C in float where that keeps what it says (default: double)");
   command->add_flag("--compress", arguments->compressed,
                     "C of processes with so few inducing inputs that at most 2 % of an sd is lost");
   command->add_flag_callback(
       "--no-trust", [arguments] { arguments->trust = false; }, "C without the trust status");
-  command->add_option("--prefix", arguments->prefix, "Of names and files in C (default: twinmap)")
-      ->type_name("NAME");
+  addOption(*command, "--prefix", "NAME", arguments->prefix, "Of names and files in C (default: twinmap)");
   command->callback([arguments] { exportMap(*arguments); });
 }
 
@@ -170,21 +136,16 @@ void addNoise(CLI::App& app) {
   command->footer(
       "Takes a measurement while nothing moves, or residuals. Prints standard deviation and autoregressive "
       "model of each column, and the same as YAML for an experiment file.");
-  command->add_option("MEASUREMENT", arguments->measurement, "CSV, MATLAB or HDF5 file")
-      ->required()
-      ->option_text(" ");
-  command->add_option("--window", arguments->window, "Times from A to B only; s (default: all)")
-      ->type_name("A,B")
+  addArgument(*command, "MEASUREMENT", arguments->measurement, "CSV, MATLAB or HDF5 file");
+  addOption(*command, "--window", "A,B", arguments->window, "Times from A to B only; s (default: all)")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--columns", arguments->columns, "Columns, or outputs of the experiment (default: all)")
-      ->type_name("NAME,...")
+  addOption(*command, "--columns", "NAME,...", arguments->columns,
+            "Columns, or outputs of the experiment (default: all)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command
-      ->add_option("--experiment", arguments->experiment,
-                   "Experiment file whose 'measurement' says where its outputs stand, and in which units")
-      ->type_name("FILE");
+  addOption(*command, "--experiment", "FILE", arguments->experiment,
+            "Experiment file whose 'measurement' says where its outputs stand, and in which units");
   command->add_flag("--json", arguments->json, "Print JSON");
   command->callback([arguments] { noise(*arguments); });
 }
@@ -194,16 +155,12 @@ void addLook(CLI::App& app) {
   CLI::App* command = app.add_subcommand("look", "Look at a recording before it is used");
   command->footer(
       "Prints of each column its unit, rate, range and noise, and what stands out: missing cells, gaps, "
-      "jitter, "
-      "spikes, clipping, angles that wrap.");
-  command->add_option("MEASUREMENT", arguments->measurement, "CSV, MATLAB or HDF5 file")
-      ->required()
-      ->option_text(" ");
-  CLI::Option* time =
-      command->add_option("--time", arguments->time, "Column of times, such as 't [ms]' (default: t or time)")
-          ->type_name("COLUMN");
-  command->add_option("--rate", arguments->sample_rate, "Rate of the rows instead of a column of times; Hz")
-      ->type_name("HZ")
+      "jitter, spikes, clipping, angles that wrap.");
+  addArgument(*command, "MEASUREMENT", arguments->measurement, "CSV, MATLAB or HDF5 file");
+  CLI::Option* time = addOption(*command, "--time", "COLUMN", arguments->time,
+                                "Column of times, such as 't [ms]' (default: t or time)");
+  addOption(*command, "--rate", "HZ", arguments->sample_rate,
+            "Rate of the rows instead of a column of times; Hz")
       ->check(makePositiveCheck())
       ->excludes(time);
   command->add_flag("--json", arguments->json, "Print JSON");

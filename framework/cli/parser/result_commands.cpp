@@ -14,8 +14,8 @@ namespace {
 void addStatus(CLI::App& app) {
   const auto arguments = std::make_shared<StatusArguments>();
   CLI::App* command = app.add_subcommand("status", "Print how far a run or sweep is");
-  command->add_option("DIR", arguments->folder, "Folder of the results")->required()->option_text(" ");
-  command->add_option("--store", arguments->store, "As given to run")->type_name("DIR");
+  addArgument(*command, "DIR", arguments->folder, "Folder of the results");
+  addOption(*command, "--store", "DIR", arguments->store, "As given to run");
   command->callback([arguments] { status(*arguments); });
 }
 
@@ -24,8 +24,8 @@ void addCompare(CLI::App& app) {
   CLI::App* command = app.add_subcommand("compare", "Compare two runs, parameter by parameter");
   command->footer(
       "Prints differences with their confidence intervals, and which keys of the experiments differ.");
-  command->add_option("A", arguments->folder_a, "Folder of a run")->required()->option_text(" ");
-  command->add_option("B", arguments->folder_b, "Folder of another run")->required()->option_text(" ");
+  addArgument(*command, "A", arguments->folder_a, "Folder of a run");
+  addArgument(*command, "B", arguments->folder_b, "Folder of another run");
   CLI::Option* csv = command->add_flag("--csv", arguments->csv, "Print CSV instead of a table");
   command->add_flag("--json", arguments->json, "Print JSON instead of a table")->excludes(csv);
   command->callback([arguments] { compare(*arguments); });
@@ -34,11 +34,9 @@ void addCompare(CLI::App& app) {
 void addReport(CLI::App& app) {
   const auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = app.add_subcommand("report", "Write report.html again, or one of several runs");
-  command->add_option("DIR", arguments->folders, "Folders of runs")->required()->option_text(" ");
-  command
-      ->add_option("--out", arguments->out,
-                   "Folder for the report (default: the run's own; of several runs results/report)")
-      ->type_name("DIR");
+  addArgument(*command, "DIR", arguments->folders, "Folders of runs");
+  addOption(*command, "--out", "DIR", arguments->out,
+            "Folder for the report (default: the run's own; of several runs results/report)");
   addFailOnGates(*command, arguments->fail_on_gates);
   command->callback([arguments] { report(*arguments); });
 }
@@ -52,12 +50,12 @@ void addVerify(CLI::App& app, const Invocation& invocation) {
   command->footer(
       "Simulates some samples again and computes all that follows from samples and hyperparameters. Of a "
       "sweep, three cases. Exit code 1 where something differs.");
-  command->add_option("DIR", arguments->folder, "Folder of a run or a sweep")->required()->option_text(" ");
-  command->add_option("--samples", arguments->samples, "Samples of each set to simulate again (default: 5)")
-      ->type_name("N")
+  addArgument(*command, "DIR", arguments->folder, "Folder of a run or a sweep");
+  addOption(*command, "--samples", "N", arguments->samples,
+            "Samples of each set to simulate again (default: 5)")
       ->check(CLI::Range(0, kMostSamples));
-  command->add_option("--seed", arguments->seed, "Chooses the samples and cases (default: another each time)")
-      ->type_name("S");
+  addOption(*command, "--seed", "S", arguments->seed,
+            "Chooses the samples and cases (default: another each time)");
   command->add_flag("--all", arguments->all,
                     "Run everything again, in a temporary folder, and compare all files");
   addThreads(*command, arguments->threads);
@@ -89,11 +87,9 @@ void addStore(CLI::App& app) {
       "list: models, their samples and what computed them. verify: the same after comparing every byte with "
       "its checksum. merge: copies the samples of other folders. prune: removes what is damaged, unfinished "
       "or stored twice.");
-  command->add_option("ACTION", arguments->action, "list, verify, merge or prune")
-      ->required()
-      ->check(CLI::IsMember({"list", "verify", "merge", "prune"}))
-      ->option_text(" ");
-  command->add_option("DIR", arguments->folder, "Folder of simulated samples")->required()->option_text(" ");
+  addArgument(*command, "ACTION", arguments->action, "list, verify, merge or prune")
+      ->check(CLI::IsMember({"list", "verify", "merge", "prune"}));
+  addArgument(*command, "DIR", arguments->folder, "Folder of simulated samples");
   command->add_option("FROM", arguments->from, "Folders whose samples merge copies")->option_text(" ");
   command->callback([arguments] { runStoreAction(*arguments); });
 }

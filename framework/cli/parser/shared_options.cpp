@@ -14,7 +14,7 @@ CLI::Validator makePositiveCheck() {
 }
 
 void addExperiment(CLI::App& command, ExperimentArguments& arguments) {
-  command.add_option("FILE", arguments.file, "Experiment file (YAML)")->required()->option_text(" ");
+  addArgument(command, "FILE", arguments.file, "Experiment file (YAML)");
   command
       .add_option("key.path=value", arguments.overrides,
                   "Overrides of values in the file: noise.scale=2 'parameters.k_y.bounds=[4, 16]'; lists and "
@@ -28,49 +28,41 @@ void addFailOnGates(CLI::App& command, bool& fail) {
 
 void addThreads(CLI::App& command, int& threads) {
   constexpr int kMaxThreads = 1024;
-  command
-      .add_option("--threads", threads,
-                  "Threads (default: all cores, or OMP_NUM_THREADS); results do not depend on them")
-      ->type_name("N")
+  addOption(command, "--threads", "N", threads,
+            "Threads (default: all cores, or OMP_NUM_THREADS); results do not depend on them")
       ->check(CLI::Range(1, kMaxThreads));
+}
+
+void addKnown(CLI::App& command, std::vector<std::string>& known) {
+  addOption(command, "--set", "NAME=VALUE", known, "Value of a known input of the set-up; for each of them");
 }
 
 void addWhereAndHow(CLI::App& command, RunArguments& arguments, const Invocation& invocation) {
   arguments.threads = invocation.threads;
   arguments.command_line = invocation.line;
   addExperiment(command, arguments.experiment);
-  command.add_option("--out", arguments.folder, "Folder for the results (default: results/NAME)")
-      ->type_name("DIR");
-  command
-      .add_option("--store", arguments.store,
-                  "Folder of simulated samples, shared with other runs (default: chunks in the run's folder)")
-      ->type_name("DIR");
+  addOption(command, "--out", "DIR", arguments.folder, "Folder for the results (default: results/NAME)");
+  addOption(command, "--store", "DIR", arguments.store,
+            "Folder of simulated samples, shared with other runs (default: chunks in the run's folder)");
   addThreads(command, arguments.threads);
-  command
-      .add_option("--memory", arguments.memory,
-                  "Memory that the cases of a sweep may take together (default: half of the machine's)")
-      ->type_name("GIB")
+  addOption(command, "--memory", "GIB", arguments.memory,
+            "Memory that the cases of a sweep may take together (default: half of the machine's)")
       ->check(makePositiveCheck());
 }
 
 void addJobs(CLI::App& command, SubmitArguments& arguments) {
   constexpr int kLongest = 100000, kMaxCpus = 1024, kMaxShards = 1000;
-  command.add_option("--time", arguments.minutes, "Time limit of a job; min (default: 60)")
-      ->type_name("MINUTES")
+  addOption(command, "--time", "MINUTES", arguments.minutes, "Time limit of a job; min (default: 60)")
       ->check(CLI::Range(1, kLongest));
-  command.add_option("--cpus", arguments.cpus, "Threads of a job (default: 1)")
-      ->type_name("N")
+  addOption(command, "--cpus", "N", arguments.cpus, "Threads of a job (default: 1)")
       ->check(CLI::Range(1, kMaxCpus));
-  command
-      .add_option("--shards", arguments.shards,
-                  "Jobs that simulate (default: such that each takes half of the time limit)")
-      ->type_name("N")
+  addOption(command, "--shards", "N", arguments.shards,
+            "Jobs that simulate (default: such that each takes half of the time limit)")
       ->check(CLI::Range(1, kMaxShards));
 }
 
 CLI::Option* addOn(CLI::App& command, SubmitArguments& arguments) {
-  return command.add_option("--on", arguments.on, "slurm, template or local")
-      ->type_name("SCHEDULER")
+  return addOption(command, "--on", "SCHEDULER", arguments.on, "slurm, template or local")
       ->check(CLI::IsMember({"slurm", "template", "local"}));
 }
 

@@ -250,10 +250,9 @@ void bridgeGaps(TableSpec& table, const std::string& source, double start, doubl
     longest = std::max(longest, signal.times[gap.before + 1] - signal.times[gap.before]);
   }
   if (!gaps.empty()) {
-    table.bridged = fmt::format(
-        "{} of its samples are late or lost, the longest step {} where {} is usual: "
-        "interpolated",
-        lost, describeTime(longest), describeTime(signal.getStep()));
+    table.bridged =
+        fmt::format("{} of its samples are late or lost, the longest step {} where {} is usual: interpolated",
+                    lost, describeTime(longest), describeTime(signal.getStep()));
   }
 }
 

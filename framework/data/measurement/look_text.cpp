@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "framework/base/json/json.hpp"
 #include "framework/base/text/number_text.hpp"

@@ -290,10 +290,6 @@ void dropMeasuredSignals(ExperimentSpec& experiment) {
   }
 }
 
-bool hasMeasuredSignals(const ExperimentSpec& experiment) {
-  return !listSignalColumns(experiment).empty();
-}
-
 std::vector<std::string> listSignalColumns(const ExperimentSpec& experiment) {
   std::vector<std::string> names;
   for (const SignalSpec& signal : experiment.model.excitation) {

@@ -32,10 +32,7 @@ void copyMeasuredSignals(const std::vector<SignalSpec>& from, ModelSpec& model);
 /// Empties the tables whose file is there to be read again.
 void dropMeasuredSignals(ExperimentSpec& experiment);
 
-/// Whether any table of the excitation is given as `measured`.
-bool hasMeasuredSignals(const ExperimentSpec& experiment);
-
-/// The names of the columns that they need, for readTable().
+/// The names of the columns that tables given as `measured` need, for readTable().
 std::vector<std::string> listSignalColumns(const ExperimentSpec& experiment);
 
 }  // namespace twinmap

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "framework/base/text/number_text.hpp"
@@ -95,8 +94,7 @@ std::vector<std::string> describeJumps(const Table& table, const MeasurementSpec
     if (!jumps.empty()) {
       described.push_back(fmt::format(
           "{}: column '{}' jumps by a whole turn ({} {}) before row {}, {} times in all; if it is an angle "
-          "that "
-          "wraps, give measurement.unwrap: [{}]",
+          "that wraps, give measurement.unwrap: [{}]",
           table.source, column.name, toShortText(*turn, 4), unit, jumps.front() + 1, jumps.size(), output));
     }
   }
@@ -220,8 +218,7 @@ void requireUnclipped(const Measurement& measurement, const MeasurementSpec& spe
       if (findSide(range, value) != 0.0) {
         throw MeasurementError(fmt::format(
             "{}: column '{}' is {} at {} s, a limit of measurement.range.{}; a trained map cannot use "
-            "clipped "
-            "samples, inference from the experiment file can (twinmap infer FILE.yaml MEASUREMENT)",
+            "clipped samples, inference from the experiment file can (twinmap infer FILE.yaml MEASUREMENT)",
             measurement.source, measurement.column_names[o], toText(value),
             toShortText(measurement.times[i], 6), layout.output_names[o]));
       }

@@ -140,10 +140,9 @@ void requireSame(const Pair& pair, const SignalSpec& signal, const std::string& 
   difference.cwiseAbs().maxCoeff(&worst);
   throw MeasurementError(fmt::format(
       "{}: column '{}' is not the excitation '{}' that the map was trained on: it differs by {:.3g} % (root "
-      "mean "
-      "square; at most {:.0f} %), its scale is {:.4g} (1 within {:.0f} %), and at {:.6g} s it is {:.4g} {} "
-      "instead of "
-      "{:.4g} {}; give the start of a window with that excitation (--start), or train a map on this one",
+      "mean square; at most {:.0f} %), its scale is {:.4g} (1 within {:.0f} %), and at {:.6g} s it is {:.4g} "
+      "{} instead of {:.4g} {}; give the start of a window with that excitation (--start), or train a map on "
+      "this one",
       source, column, signal.name.text, 100.0 * std::sqrt(difference.squaredNorm() / strength),
       100.0 * kLargestDifference, 1.0 + scale / strength, 100.0 * kLargestScale, pair.times[worst] + start,
       pair.measured[worst], signal.unit, pair.trained[worst], signal.unit));

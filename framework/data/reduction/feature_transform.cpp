@@ -4,7 +4,6 @@
 
 #include "framework/data/reduction/partial_least_squares.hpp"
 #include "framework/data/reduction/principal_components.hpp"
-#include "framework/data/reduction/scaling_steps.hpp"
 #include "framework/data/reduction/selections.hpp"
 
 namespace twinmap {

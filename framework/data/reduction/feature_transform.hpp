@@ -30,7 +30,7 @@ struct FeatureTransform {
 
 /// Fits the steps to training samples (n >= 2), one after another: a step sees what those before it made of
 /// features, noise covariance and sensitivities. What each kind of step is, its errors and its cost stand at
-/// its own function: fitZScore, fitWhiten (scaling_steps.hpp), fitPrincipalComponents,
+/// its own function: fitZScore, fitWhiten (affine_step.hpp), fitPrincipalComponents,
 /// fitPartialLeastSquares, fitSelect (selections.hpp).
 FeatureTransform fitTransform(const std::vector<TransformStepSpec>& steps, const LabelledFeatures& samples);
 

@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "framework/data/reduction/principal_components.hpp"
-#include "framework/data/reduction/scaling_steps.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "framework/data/features/labelled_features.hpp"
 #include "framework/data/reduction/affine_step.hpp"

@@ -2,9 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/features/layout_rows.hpp"
 #include "framework/experiment/check/check_noise.hpp"

@@ -27,14 +27,6 @@ LocalModel makeLocalModel(const FeatureExtractor& extractor, const std::vector<P
   return local;
 }
 
-LocalModel calcLocalModel(Simulator& simulator, const FeatureExtractor& extractor,
-                          const std::vector<ParameterSpec>& parameters, const VectorXd& point) {
-  VectorXd stencil(simulator.getLayout().getRowCount() * countNeighbours(parameters.size()));
-  SampleStatus status;
-  simulateStencils(simulator, parameters, point, stencil, &status);
-  return makeLocalModel(extractor, parameters, point, stencil, status);
-}
-
 std::vector<LocalModel> calcLocalModels(const Simulator& prototype, const FeatureExtractor& extractor,
                                         const std::vector<ParameterSpec>& parameters, const MatrixXd& points,
                                         int threads) {

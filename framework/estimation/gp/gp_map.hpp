@@ -7,7 +7,7 @@
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/gp/noise_profile.hpp"
 #include "framework/estimation/known_inputs.hpp"
-#include "kernels/gp/online/process.hpp"
+#include "kernels/gp/online/process_view.hpp"
 
 namespace twinmap {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "kernels/gp/online/process.hpp"
+#include "kernels/gp/online/process_view.hpp"
 
 namespace twinmap {
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "framework/estimation/gp/gp_map.hpp"
-#include "framework/estimation/training_control.hpp"
+#include "framework/estimation/run_tasks.hpp"
 
 namespace twinmap {
 

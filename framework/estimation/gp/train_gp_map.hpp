@@ -7,7 +7,7 @@
 #include "framework/data/features/labelled_features.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/gp/gp_map.hpp"
-#include "framework/estimation/training_control.hpp"
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "kernels/gp/training.hpp"
 

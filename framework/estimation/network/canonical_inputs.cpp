@@ -2,10 +2,9 @@
 
 #include <cmath>
 
+#include "framework/data/reduction/affine_step.hpp"
 #include "framework/data/reduction/principal_components.hpp"
-#include "framework/data/reduction/scaling_steps.hpp"
 #include "kernels/linalg/decompositions.hpp"
-#include "kernels/network/network.hpp"
 
 namespace twinmap {
 
@@ -17,10 +16,9 @@ namespace {
 
 /// Of all variables, of the highest degree that leaves four samples a term.
 network::Products chooseDegree(Index variables, Index samples) {
-  constexpr Index kSamplesPerTerm = 4;
   for (const network::Products products :
        {network::Products{variables, variables}, network::Products{variables, 0}}) {
-    if (kSamplesPerTerm * (variables + products.count()) <= samples) {
+    if (sufficeFor(variables, products, samples)) {
       return products;
     }
   }
@@ -57,6 +55,11 @@ MatrixXd calcWhitening(const MatrixXd& covariance) {
 }
 
 }  // namespace
+
+bool sufficeFor(Index variables, const network::Products& products, Index samples) {
+  constexpr Index kSamplesPerTerm = 4;
+  return kSamplesPerTerm * (variables + products.count()) <= samples;
+}
 
 CanonicalInputs calcCanonicalInputs(const MatrixXd& inputs, const MatrixXd& points) {
   const auto n = static_cast<double>(inputs.cols());

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "kernels/network/network.hpp"
+
 namespace twinmap {
 
 /// Combinations of measurements in the order in which polynomials of the parameters explain them: canonical
@@ -16,5 +18,8 @@ struct CanonicalInputs {
 /// the second or first where there are fewer than four samples a term. Directions in which inputs do not vary
 /// give 0. Cost: (k + terms)^2 n + (k + terms)^3 flops.
 CanonicalInputs calcCanonicalInputs(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& points);
+
+/// Whether there are four samples for each term of a polynomial.
+bool sufficeFor(Eigen::Index variables, const network::Products& products, Eigen::Index samples);
 
 }  // namespace twinmap

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "framework/estimation/run_tasks.hpp"
+#include "framework/estimation/network/canonical_inputs.hpp"
 #include "kernels/network/train.hpp"
 
 namespace twinmap {
@@ -15,8 +15,11 @@ namespace {
 
 // Batches of noise: the steps of a run come first, those for other purposes far behind them.
 constexpr std::uint64_t kRuns = std::uint64_t{1} << 32;
-constexpr std::uint64_t kRegression = kRuns / 2, kHeldOut = kRuns / 2 + 1;
-constexpr std::uint64_t kMeasured = kRuns / 2 + 2, kPosterior = kRuns - 1;
+constexpr std::uint64_t kRegression = kRuns / 2, kHeldOut = kRegression + 1, kMeasured = kRegression + 2,
+                        kPosterior = kRuns - 1;
+
+// Draws of samples that a regression takes, or a posterior of weights at most.
+constexpr Index kLeast = 4000, kMost = 20000;
 
 // Of an ensemble: enough to tell apart what is known from what is guessed.
 constexpr std::uint64_t kMembers = 5;
@@ -59,15 +62,12 @@ network::BatchSource makeSource(const NetworkSet& set, const std::vector<Index>&
 /// Of the inputs that vary most: they save a network most of its work where a response is smooth. Fewer where
 /// four samples a term would be too many.
 network::Products chooseProducts(Index inputs, Index samples) {
-  constexpr Index kMaxSquared = 12, kMaxCubed = 8, kSamplesPerTerm = 4;
-  const auto fits = [&](const network::Products& products) {
-    return kSamplesPerTerm * (inputs + products.count()) <= samples;
-  };
+  constexpr Index kMaxSquared = 12, kMaxCubed = 8;
   network::Products products{std::min(inputs, kMaxSquared), std::min(inputs, kMaxCubed)};
-  while (products.cubed > 0 && !fits(products)) {
+  while (products.cubed > 0 && !sufficeFor(inputs, products, samples)) {
     --products.cubed;
   }
-  while (products.squared > 0 && !fits(products)) {
+  while (products.squared > 0 && !sufficeFor(inputs, products, samples)) {
     --products.squared;
   }
   return products;
@@ -76,8 +76,7 @@ network::Products chooseProducts(Index inputs, Index samples) {
 /// The network before its first step: the regression of several draws of each training sample.
 network::Network makeInitial(const NetworkSet& set, const std::vector<Index>& training,
                              const NetworkFitting& fitting) {
-  constexpr Index kMin = 4000, kMax = 20000;
-  const Index count = std::clamp(static_cast<Index>(training.size()), kMin, kMax);
+  const Index count = std::clamp(static_cast<Index>(training.size()), kLeast, kMost);
   const network::Samples drawn =
       drawSamples(set, repeat(training, count), {fitting.seed, RandomPurpose::kNetworkNoise},
                   fitting.run * kRuns + kRegression);
@@ -111,9 +110,8 @@ network::NetworkTraining train(const NetworkSet& set, const Split& split, const 
 
 /// One draw of the noise of each training sample, but of so many at most.
 network::Samples drawOnce(const NetworkSet& set, const Split& split, const NetworkFitting& fitting) {
-  constexpr std::size_t kMax = 20000;
   std::vector<Index> chosen = split.training;
-  chosen.resize(std::min(chosen.size(), kMax));
+  chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(kMost)));
   return drawSamples(set, chosen, {fitting.seed, RandomPurpose::kNetworkNoise},
                      fitting.run * kRuns + kPosterior);
 }

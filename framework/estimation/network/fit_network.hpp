@@ -6,7 +6,7 @@
 
 #include "framework/estimation/network/noisy_samples.hpp"
 #include "framework/estimation/network/sample_weights.hpp"
-#include "framework/estimation/training_control.hpp"
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/experiment/inverse_map_spec.hpp"
 #include "kernels/network/ensemble.hpp"
 

@@ -1,6 +1,5 @@
 #include "framework/estimation/network/network_map.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "framework/data/features/labelled_features.hpp"
@@ -31,17 +30,15 @@ Mixture takeMixture(const network::Predictor::Workspace& predicted) {
 }
 
 Estimates predictTargets(const std::vector<network::Member>& members, const MatrixXd& inputs, int threads) {
-  constexpr Index kChunk = 256;  // measurements that share buffers
   const network::Network& network = members.front().network;
   const network::EnsemblePredictor predictor(members);
   const Index n = inputs.cols(), p = network.countTargets();
   Estimates predictions{MatrixXd(p, n), MatrixXd(p, n), std::vector<MatrixXd>(static_cast<std::size_t>(n))};
   const bool mixed = network.countComponents() > 1;
   predictions.mixtures.resize(static_cast<std::size_t>(mixed ? n : 0));
-  runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
+  runChunks(threads, n, [&](Index first, Index end) {
     network::EnsemblePredictor::Workspace workspace(predictor);
-    const Index first = static_cast<Index>(chunk) * kChunk;
-    for (Index i = first; i < std::min(n, first + kChunk); ++i) {
+    for (Index i = first; i < end; ++i) {
       const network::Predictor::Workspace& predicted = predictor.predict(inputs.col(i), workspace);
       predictions.mean.col(i) = predicted.mean;
       predictions.stddev.col(i) = predicted.stddev;

@@ -1,10 +1,8 @@
 #include "framework/estimation/network/sample_weights.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "framework/base/random/random.hpp"
-#include "framework/estimation/run_tasks.hpp"
 #include "kernels/network/predictor.hpp"
 #include "kernels/network/weight_density.hpp"
 #include "kernels/sampling/nuts.hpp"
@@ -26,20 +24,18 @@ struct ChainStream {
       : random(seed.seed, RandomPurpose::kNetworkChains), stream(seed.run * kMaxChains + chain) {}
 
   markov::ChainNumbers makeNumbers() const {
-    constexpr std::uint64_t kNormal = 0, kUniform = 1;
     return {[*this](Index i) { return random.calcNormal(static_cast<std::uint64_t>(i), kNormal, stream); },
             [*this](Index i) { return random.calcUniform(static_cast<std::uint64_t>(i), kUniform, stream); }};
   }
 
   VectorXd drawStart(const VectorXd& trained) const {
     constexpr double kApart = 0.1;
-    constexpr std::uint64_t kStart = 2;
     return trained + kApart * VectorXd::NullaryExpr(trained.size(), [&](Index i) {
                        return random.calcNormal(static_cast<std::uint64_t>(i), kStart, stream);
                      });
   }
 
-  static constexpr std::uint64_t kMaxChains = 1000;
+  static constexpr std::uint64_t kNormal = 0, kUniform = 1, kStart = 2, kMaxChains = 1000;
 };
 
 /// What is followed along a chain: the means of all targets at some samples, then the density. A row a

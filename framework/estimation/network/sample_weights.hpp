@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "framework/estimation/training_control.hpp"
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/experiment/inverse_map_spec.hpp"
 #include "kernels/network/train.hpp"
 #include "kernels/sampling/convergence.hpp"

@@ -1,11 +1,9 @@
 #include "framework/estimation/network/surrogate_pool.hpp"
 
-#include <algorithm>
-
 #include "framework/data/features/labelled_features.hpp"
+#include "framework/data/reduction/affine_step.hpp"
 #include "framework/data/reduction/principal_components.hpp"
-#include "framework/data/reduction/scaling_steps.hpp"
-#include "framework/estimation/run_tasks.hpp"
+#include "framework/estimation/folds.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/linalg/paired_matrix.hpp"
@@ -38,14 +36,12 @@ MatrixXd drawPoints(const Surrogate& surrogate, const ModelSpec& model, Index n,
 
 PooledScores calcScores(const ForwardSurrogate& forward, const MatrixXd& points,
                         const TrainingControl& control) {
-  constexpr Index kChunk = 100;  // points that share buffers
   const Index r = forward.getScoreCount(), n = points.cols();
   PooledScores scores{MatrixXd(r, n), MatrixXd(r, n)};
-  runTasks(control.threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
+  runChunks(control.threads, n, [&](Index begin, Index end) {
     gp::throwIfStopped(control.stop);
     gp::SharedProcess::Workspace workspace;
-    const Index begin = static_cast<Index>(chunk) * kChunk;
-    for (Index i = begin; i < std::min(n, begin + kChunk); ++i) {
+    for (Index i = begin; i < end; ++i) {
       Index first = 0;
       for (const gp::SharedProcess& process : forward.windows) {
         const Index count = process.getFunctionCount();
@@ -63,12 +59,8 @@ MatrixXd drawScores(const PooledScores& scores, const MatrixXd& error_factor, st
   const Index r = scores.mean.rows();
   const MatrixXd identity = MatrixXd::Identity(r, r);
   const NormalSamples once({scores.mean, identity, identity, scores.stddev, error_factor});
-  std::vector<Index> all(static_cast<std::size_t>(scores.mean.cols()));
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    all[i] = static_cast<Index>(i);
-  }
   MatrixXd drawn(r, scores.mean.cols());
-  once.draw(all, {seed, RandomPurpose::kNetworkPool}, {}, drawn);
+  once.draw(listRange(0, drawn.cols()), {seed, RandomPurpose::kNetworkPool}, {}, drawn);
   return drawn;
 }
 

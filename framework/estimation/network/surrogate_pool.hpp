@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "framework/estimation/network/noisy_samples.hpp"
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
-#include "framework/estimation/training_control.hpp"
 
 namespace twinmap {
 

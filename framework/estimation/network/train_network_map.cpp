@@ -1,13 +1,12 @@
 #include "framework/estimation/network/train_network_map.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "framework/data/features/labelled_features.hpp"
-#include "framework/estimation/calibration_factor.hpp"
 #include "framework/estimation/folds.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/estimation/network/canonical_inputs.hpp"
 #include "framework/estimation/network/training_warnings.hpp"
 #include "framework/estimation/run_tasks.hpp"
@@ -24,8 +23,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kMany = NetworkMapSpec::kMany;
-
 // Of held-out samples with draws of their noise: enough for quantiles, and where these alone tell how
 // calibrated a network is, for a factor within 1 %.
 constexpr Index kColumnsOfFew = 2000, kColumnsOfMany = 8000;
@@ -34,7 +31,7 @@ constexpr Index kColumnsOfFew = 2000, kColumnsOfMany = 8000;
 /// network is, of five, until a tenth are 2000.
 Index calcPeriod(Index samples) {
   constexpr Index kFew = 1000;
-  return samples < kFew || (samples >= kMany && samples < NetworkMapSpec::kVeryMany) ? 5 : 10;
+  return samples < kFew || (samples >= NetworkMapSpec::kMany && samples < NetworkMapSpec::kVeryMany) ? 5 : 10;
 }
 
 /// count: of all samples, where `all` are those of a fold.
@@ -45,10 +42,6 @@ Split split(const std::vector<Index>& all, Index count) {
     (i % period == period - 1 ? parts.held_out : parts.training).push_back(all[i]);
   }
   return parts;
-}
-
-std::vector<Index> listAll(Index count) {
-  return listLeftOut(count, 1, 0);
 }
 
 /// Parameters on [-1, 1] of their bounds.
@@ -67,12 +60,6 @@ void setBounds(const ModelSpec& model, NetworkMap& map) {
 MatrixXd calcFactor(const MatrixXd& covariance) {
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(covariance);
   return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
-/// Draws of held-out samples' noise: enough for so many columns.
-Index countDraws(Index samples, Index columns) {
-  constexpr Index kMax = 4;
-  return std::clamp<Index>(columns / samples, 1, kMax);
 }
 
 /// What networks say of samples that they had not seen.
@@ -105,7 +92,7 @@ void place(const Estimates& some, const std::vector<Index>& columns, Estimates& 
 /// Parts of the samples, each left out in turn: none of many; else ten, as a few more of them tell much.
 /// Kinds of network that are several already have five, for the time.
 Index countFolds(const NetworkMapSpec& spec, Index samples) {
-  if (samples >= kMany) {
+  if (samples >= NetworkMapSpec::kMany) {
     return 0;
   }
   return spec.bayesian == NetworkBayes::kNone ? 10 : 5;
@@ -114,7 +101,7 @@ Index countFolds(const NetworkMapSpec& spec, Index samples) {
 /// Networks that a part of the samples is left out of in turn, and what they say of it.
 HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, const TrainingControl& control) {
   const Index n = set.targets.cols(), p = set.targets.rows(), draws = countDraws(n, kColumnsOfFew);
-  const MatrixXd measured = drawMeasured(set.samples, listAll(n), draws, task.seed);
+  const MatrixXd measured = drawMeasured(set.samples, listRange(0, n), draws, task.seed);
   const auto columns_in_all = static_cast<std::size_t>(n * draws);
   HeldOutTargets held_out{
       {MatrixXd(p, n * draws), MatrixXd(p, n * draws), std::vector<MatrixXd>(columns_in_all),
@@ -164,7 +151,7 @@ VectorXd calcDistillationScale(const SurrogatePool& pool, const NetworkTask& tas
   const NormalSamples samples(pool.left_out);
   const MatrixXd targets = makeTargets(map, pool.left_out_points);
   const HeldOutTargets found =
-      predictHeldOut({samples, targets}, map.members, listAll(n), draws, task.seed, threads);
+      predictHeldOut({samples, targets}, map.members, listRange(0, n), draws, task.seed, threads);
   VectorXd scale(targets.rows());
   for (Index k = 0; k < scale.size(); ++k) {
     scale[k] = calcStddevScale(calcDepths(found.predictions, found.truth, k));
@@ -264,7 +251,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
   const std::unique_ptr<NoisySamples> samples = makeSamples(simulations, known, map.inputs);
   const MatrixXd targets = makeTargets(map, simulations.points);
   const NetworkSet set{*samples, targets};
-  const Split parts = split(listAll(n), n);
+  const Split parts = split(listRange(0, n), n);
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
   const auto left = static_cast<Index>(parts.held_out.size());
   const HeldOutTargets held_out =
@@ -286,7 +273,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool&
   const MatrixXd targets = makeTargets(map, pool.points);
   const NormalSamples samples(pool.inputs);
   const NetworkSet set{samples, targets};
-  const Split parts = split(listAll(targets.cols()), targets.cols());
+  const Split parts = split(listRange(0, targets.cols()), targets.cols());
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
   const Index draws = countDraws(static_cast<Index>(parts.held_out.size()), kColumnsOfMany);
   const HeldOutTargets held_out =

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "framework/base/log/search_stage.hpp"
-#include "framework/estimation/informativeness.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"

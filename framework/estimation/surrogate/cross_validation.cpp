@@ -1,12 +1,12 @@
 #include "framework/estimation/surrogate/cross_validation.hpp"
 
 #include <algorithm>
+#include <boost/math/constants/constants.hpp>
 #include <cmath>
 
-#include "framework/estimation/calibration_factor.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/folds.hpp"
-#include "framework/estimation/residual_correlation.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/estimation/surrogate/predicted_limit.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -17,21 +17,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kFolds = 5;
-constexpr double kTwoPi = 6.283185307179586;
-
-/// How many draws of the noise are inferred: enough for quantiles, and no more than their time is worth.
-Index countDraws(const SurrogateSamples& samples) {
-  constexpr Index kMaxColumns = 1000, kMaxDraws = 4;
-  const Index n = samples.points.cols();
-  return std::clamp<Index>(std::min(samples.measured.cols() / n, kMaxColumns / n), 1, kMaxDraws);
-}
-
 /// Sum over the columns of the log densities of normal errors, over their standard deviations.
 double calcLogDensity(const MatrixXd& standardised, const MatrixXd& correlation) {
   const MatrixXd lower = linalg::calcCholesky(correlation).lower;
   const auto n = static_cast<double>(standardised.cols()), p = static_cast<double>(standardised.rows());
-  return -0.5 * (linalg::solveLower(lower, standardised).squaredNorm() + n * p * std::log(kTwoPi)) -
+  return -0.5 * (linalg::solveLower(lower, standardised).squaredNorm() +
+                 n * p * std::log(boost::math::constants::two_pi<double>())) -
          n * lower.diagonal().array().log().sum();
 }
 
@@ -75,6 +66,11 @@ Surrogate makeSimilar(const Surrogate& whole, ForwardSurrogate forward, const Fo
 
 }  // namespace
 
+Index countLeastSimulations(Index variables) {
+  constexpr Index kLeast = 20;  // five folds of which are a cross-validation
+  return kLeast + 2 * variables;
+}
+
 ForwardSamples selectSimulations(const ForwardSamples& samples, const std::vector<Index>& kept) {
   ForwardSamples selected{samples.infos, samples.points(Eigen::all, kept),
                           samples.clean_features(Eigen::all, kept), samples.noise_covariance};
@@ -101,7 +97,9 @@ std::vector<std::vector<Index>> listFolds(Index simulations) {
 
 HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
                       std::vector<ForwardSurrogate> folds, const TrainingControl& control) {
-  const Index n = samples.points.cols(), draws = countDraws(samples), p = whole.parameters;
+  constexpr Index kColumns = 1000;  // enough for quantiles
+  const Index n = samples.points.cols(), p = whole.parameters;
+  const Index draws = countDraws(n, std::min(samples.measured.cols(), kColumns));
   const Index known = samples.points.rows() - whole.unknown;
   HeldOut held_out;
   held_out.predictions = {MatrixXd(p, n * draws), MatrixXd(p, n * draws), {}};

@@ -1,11 +1,17 @@
 #pragma once
 
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/surrogate/surrogate.hpp"
 #include "framework/estimation/surrogate/surrogate_samples.hpp"
-#include "framework/estimation/training_control.hpp"
 
 namespace twinmap {
+
+/// Parts of the simulations that are left out in turn.
+inline constexpr Eigen::Index kFolds = 5;
+
+/// So many simulations of a box of so many variables can be trained with and cross-validated.
+Eigen::Index countLeastSimulations(Eigen::Index variables);
 
 /// Simulations left out of a training, and what was inferred of them from the measured features, draw by
 /// draw.

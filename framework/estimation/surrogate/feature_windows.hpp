@@ -7,6 +7,9 @@
 
 namespace twinmap {
 
+/// Components of features that vary less, in standard deviations of the noise, count as noise.
+inline constexpr double kSmallestStddev = 0.2;
+
 /// Features that are learnt together, by their indices.
 using FeatureWindow = std::vector<Eigen::Index>;
 

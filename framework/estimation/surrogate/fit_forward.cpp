@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include "framework/data/noise/noise_whitener.hpp"
-#include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/surrogate/window_fit.hpp"
 
 namespace twinmap {

@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/surrogate/feature_windows.hpp"
 #include "framework/estimation/surrogate/forward_samples.hpp"
 #include "framework/estimation/surrogate/forward_surrogate.hpp"
-#include "framework/estimation/training_control.hpp"
 #include "kernels/surrogate/fit_shared_process.hpp"
 
 namespace twinmap {

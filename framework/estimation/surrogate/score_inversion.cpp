@@ -1,7 +1,6 @@
 #include "framework/estimation/surrogate/score_inversion.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "framework/experiment/model/parameter_box.hpp"

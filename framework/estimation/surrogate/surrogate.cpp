@@ -1,6 +1,5 @@
 #include "framework/estimation/surrogate/surrogate.hpp"
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "framework/estimation/run_tasks.hpp"
@@ -50,7 +49,6 @@ VectorXd Surrogate::calcLimit(const VectorXd& noise_stddev) const {
 }
 
 Estimates Surrogate::invert(const MatrixXd& features, const MatrixXd& inputs, int threads) const {
-  constexpr Index kChunk = 16;  // measurements that share buffers
   const Index n = features.cols(), known = center.size() - unknown;
   if (features.rows() != forward->center.size() || inputs.rows() != known ||
       (known > 0 && inputs.cols() != n)) {
@@ -59,11 +57,10 @@ Estimates Surrogate::invert(const MatrixXd& features, const MatrixXd& inputs, in
   const MatrixXd scores = forward->calcScores(features);
   Estimates estimates{MatrixXd(parameters, n), MatrixXd(parameters, n)};
   estimates.limit_stddev.resize(parameters, n);
-  runTasks(threads, static_cast<std::size_t>((n + kChunk - 1) / kChunk), [&](std::size_t chunk) {
+  runChunks(threads, n, [&](Index first, Index end) {
     ScoreInversion inversion(*forward, prior);
     VectorXd mean, stddev;
-    const Index first = static_cast<Index>(chunk) * kChunk;
-    for (Index i = first; i < std::min(n, first + kChunk); ++i) {
+    for (Index i = first; i < end; ++i) {
       const VectorXd at =
           known > 0 ? VectorXd((inputs.col(i) - center.tail(known)).cwiseQuotient(half_width.tail(known)))
                     : VectorXd();

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "framework/base/hdf5/hdf5_fields.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -10,30 +12,21 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr const char* kSquaredExponential = "squared_exponential";
-constexpr const char* kMatern52 = "matern52";
-constexpr const char* kLinear = "linear";
-constexpr const char* kQuadratic = "quadratic";
+constexpr const char* kCovariances[] = {"squared_exponential", "matern52"};
+constexpr const char* kTrends[] = {"linear", "quadratic"};
 
-gp::SmoothCovariance parseCovariance(const std::string& text) {
-  if (text != kSquaredExponential && text != kMatern52) {
+template <class Enum>
+Enum parse(const std::string& text, const char* const (&names)[2]) {
+  if (text != names[0] && text != names[1]) {
     throw std::runtime_error("a surrogate has an unknown '" + text + "'");
   }
-  return text == kMatern52 ? gp::SmoothCovariance::kMatern52 : gp::SmoothCovariance::kSquaredExponential;
+  return static_cast<Enum>(text == names[1]);
 }
 
-gp::Trend parseTrend(const std::string& text) {
-  if (text != kLinear && text != kQuadratic) {
-    throw std::runtime_error("a surrogate has an unknown '" + text + "'");
-  }
-  return text == kQuadratic ? gp::Trend::kQuadratic : gp::Trend::kLinear;
-}
-
-/// The numbers of one kind of all windows, one after the other.
+/// The numbers of one kind of all windows, one after the other, column by column.
 class Flat {
  public:
-  Flat() = default;
-  explicit Flat(VectorXd numbers) : numbers_(std::move(numbers)) {}
+  explicit Flat(const char* name) : name_(name) {}
 
   void append(const MatrixXd& part) {
     const Index before = numbers_.size();
@@ -41,67 +34,50 @@ class Flat {
     numbers_.tail(part.size()) = Eigen::Map<const VectorXd>(part.data(), part.size());
   }
 
-  /// The next ones, column by column.
-  MatrixXd take(Index rows, Index cols) {
+  template <class Matrix>
+  void take(Matrix& part, Index rows, Index cols) {
     const Index left = numbers_.size() - taken_;
     if (rows < 0 || cols < 0 || (rows > 0 && cols > left / rows)) {
       throw std::invalid_argument("a surrogate's numbers are too few");
     }
-    const MatrixXd part = Eigen::Map<const MatrixXd>(numbers_.data() + taken_, rows, cols);
+    part = Eigen::Map<const MatrixXd>(numbers_.data() + taken_, rows, cols);
     taken_ += rows * cols;
-    return part;
   }
 
-  const VectorXd& getNumbers() const { return numbers_; }
+  template <class Fields>
+  void list(const Fields& fields) {
+    fields(name_, numbers_);
+  }
 
  private:
+  const char* name_;
   VectorXd numbers_;
   Index taken_ = 0;
 };
 
-/// What differs in size or kind from window to window.
+/// What differs in size or kind from window to window, then the numbers of all.
 struct WindowTable {
   std::vector<std::string> covariances, trends;
   std::vector<std::int64_t> functions, slope_points, slope_variables;
   VectorXd nuggets;
+  Flat length_scales{"length_scales"}, scaled_points{"scaled_points"}, weights{"weights"},
+      coefficients{"coefficients"}, factor_tiles{"factor_tiles"}, solved_terms{"solved_terms"},
+      term_factors{"term_factors"}, amplitudes{"amplitudes"}, left_out_ratios{"left_out_ratios"};
 };
 
-/// The numbers of all windows.
-struct WindowNumbers {
-  Flat length_scales, scaled_points, weights, coefficients, factor_tiles, solved_terms, term_factors,
-      amplitudes, left_out_ratios;
-};
-
-/// Calls action(name, numbers) for each kind.
-template <class Numbers, class Action>
-void forEachKind(Numbers& numbers, const Action& action) {
-  action("length_scales", numbers.length_scales);
-  action("scaled_points", numbers.scaled_points);
-  action("weights", numbers.weights);
-  action("coefficients", numbers.coefficients);
-  action("factor_tiles", numbers.factor_tiles);
-  action("solved_terms", numbers.solved_terms);
-  action("term_factors", numbers.term_factors);
-  action("amplitudes", numbers.amplitudes);
-  action("left_out_ratios", numbers.left_out_ratios);
-}
-
-void appendProcess(const gp::SharedProcessParts& parts, WindowTable& table, WindowNumbers& numbers) {
-  const bool matern = parts.structure.covariance == gp::SmoothCovariance::kMatern52;
-  table.covariances.emplace_back(matern ? kMatern52 : kSquaredExponential);
-  table.trends.emplace_back(parts.structure.trend == gp::Trend::kQuadratic ? kQuadratic : kLinear);
-  table.functions.push_back(parts.weights.cols());
-  table.slope_points.push_back(parts.slope_points);
-  table.slope_variables.push_back(parts.slope_variables);
-  numbers.length_scales.append(parts.hyperparameters.length_scales);
-  numbers.scaled_points.append(parts.scaled_points);
-  numbers.weights.append(parts.weights);
-  numbers.coefficients.append(parts.coefficients);
-  numbers.factor_tiles.append(parts.factor_tiles);
-  numbers.solved_terms.append(parts.solved_terms);
-  numbers.term_factors.append(parts.term_factor);
-  numbers.amplitudes.append(parts.amplitude);
-  numbers.left_out_ratios.append(parts.left_out_ratio);
+template <class Fields>
+void listWindows(const Fields& fields, WindowTable& table) {
+  fields("covariance", table.covariances);
+  fields("trend", table.trends);
+  fields("functions", table.functions);
+  fields("slope_points", table.slope_points);
+  fields("slope_variables", table.slope_variables);
+  fields("nugget", table.nuggets);
+  for (Flat* flat :
+       {&table.length_scales, &table.scaled_points, &table.weights, &table.coefficients, &table.factor_tiles,
+        &table.solved_terms, &table.term_factors, &table.amplitudes, &table.left_out_ratios}) {
+    flat->list(fields);
+  }
 }
 
 bool describesEachWindow(const WindowTable& table) {
@@ -111,68 +87,114 @@ bool describesEachWindow(const WindowTable& table) {
          table.nuggets.size() == static_cast<Index>(windows);
 }
 
+/// Calls visit(all windows' numbers, those of a window of p variables and n points, rows, columns).
+template <class Parts, class Visit>
+void visitNumbers(WindowTable& table, Parts& parts, Index p, Index n, Index functions, const Visit& visit) {
+  const Index terms = gp::countTerms(parts.structure.trend, p);
+  visit(table.length_scales, parts.hyperparameters.length_scales, p, 1);
+  visit(table.scaled_points, parts.scaled_points, n, p);
+  visit(table.weights, parts.weights, n + parts.slope_points * parts.slope_variables, functions);
+  visit(table.coefficients, parts.coefficients, terms, functions);
+  if (!parts.structure.slopes) {
+    visit(table.factor_tiles, parts.factor_tiles, linalg::PackedLower::countTiles(n), 1);
+    visit(table.solved_terms, parts.solved_terms, n, terms);
+    visit(table.term_factors, parts.term_factor, terms, terms);
+  }
+  visit(table.amplitudes, parts.amplitude, functions, 1);
+  visit(table.left_out_ratios, parts.left_out_ratio, n, 1);
+}
+
 /// The next window of p variables and n points.
-gp::SharedProcessParts take(const WindowTable& table, std::size_t window, Index p, Index n,
-                            WindowNumbers& numbers) {
+gp::SharedProcessParts take(WindowTable& table, std::size_t window, Index p, Index n) {
   gp::SharedProcessParts parts;
-  parts.structure = {parseCovariance(table.covariances.at(window)), parseTrend(table.trends.at(window))};
+  parts.structure = {parse<gp::SmoothCovariance>(table.covariances.at(window), kCovariances),
+                     parse<gp::Trend>(table.trends.at(window), kTrends)};
   parts.slope_points = table.slope_points.at(window);
   parts.slope_variables = table.slope_variables.at(window);
   parts.structure.slopes = parts.slope_points > 0;
-  const Index functions = table.functions.at(window), terms = gp::countTerms(parts.structure.trend, p);
+  parts.hyperparameters.nugget = table.nuggets(static_cast<Index>(window));
   if (parts.slope_points < 0 || parts.slope_points > n || parts.slope_variables < 0 ||
       parts.slope_variables > p) {
     throw std::invalid_argument("a surrogate has slopes at points or of variables that it lacks");
   }
-  parts.hyperparameters = {numbers.length_scales.take(p, 1), table.nuggets(static_cast<Index>(window))};
-  parts.scaled_points = numbers.scaled_points.take(n, p);
-  parts.weights = numbers.weights.take(n + parts.slope_points * parts.slope_variables, functions);
-  parts.coefficients = numbers.coefficients.take(terms, functions);
-  if (!parts.structure.slopes) {
-    parts.factor_tiles = numbers.factor_tiles.take(linalg::PackedLower::countTiles(n), 1);
-    parts.solved_terms = numbers.solved_terms.take(n, terms);
-    parts.term_factor = numbers.term_factors.take(terms, terms);
-  }
-  parts.amplitude = numbers.amplitudes.take(functions, 1);
-  parts.left_out_ratio = numbers.left_out_ratios.take(n, 1);
+  visitNumbers(table, parts, p, n, table.functions.at(window),
+               [](Flat& flat, auto& part, Index rows, Index cols) { flat.take(part, rows, cols); });
   return parts;
 }
 
-void writeWindows(Hdf5Writer& file, const std::string& group, const std::vector<gp::SharedProcess>& windows) {
+void listProcesses(const WrittenFields& fields, const std::vector<gp::SharedProcess>& windows, Index p,
+                   Index n) {
   WindowTable table;
   table.nuggets.resize(static_cast<Index>(windows.size()));
-  WindowNumbers numbers;
   for (std::size_t w = 0; w < windows.size(); ++w) {
-    table.nuggets(static_cast<Index>(w)) = windows[w].getHyperparameters().nugget;
-    appendProcess(windows[w].getParts(), table, numbers);
+    const gp::SharedProcessParts parts = windows[w].getParts();
+    table.covariances.emplace_back(kCovariances[static_cast<int>(parts.structure.covariance)]);
+    table.trends.emplace_back(kTrends[static_cast<int>(parts.structure.trend)]);
+    table.functions.push_back(parts.weights.cols());
+    table.slope_points.push_back(parts.slope_points);
+    table.slope_variables.push_back(parts.slope_variables);
+    table.nuggets(static_cast<Index>(w)) = parts.hyperparameters.nugget;
+    visitNumbers(table, parts, p, n, parts.weights.cols(),
+                 [](Flat& flat, const auto& part, Index, Index) { flat.append(part); });
   }
-  file.write(group + "/covariance", table.covariances);
-  file.write(group + "/trend", table.trends);
-  file.write(group + "/functions", table.functions);
-  file.write(group + "/slope_points", table.slope_points);
-  file.write(group + "/slope_variables", table.slope_variables);
-  file.write(group + "/nugget", table.nuggets);
-  forEachKind(numbers,
-              [&](const char* name, const Flat& flat) { file.write(group + "/" + name, flat.getNumbers()); });
+  listWindows(fields, table);
 }
 
-std::vector<gp::SharedProcess> readWindows(const Hdf5Reader& file, const std::string& group, Index p,
-                                           Index n) {
-  const WindowTable table{
-      file.readTexts(group + "/covariance"),         file.readTexts(group + "/trend"),
-      file.readIntegers(group + "/functions"),       file.readIntegers(group + "/slope_points"),
-      file.readIntegers(group + "/slope_variables"), file.readVector(group + "/nugget")};
-  if (!describesEachWindow(table)) {
-    throw std::runtime_error(file.getPath() + ": " + group + " does not describe each window");
-  }
-  WindowNumbers numbers;
-  forEachKind(numbers,
-              [&](const char* name, Flat& flat) { flat = Flat(file.readVector(group + "/" + name)); });
-  std::vector<gp::SharedProcess> windows;
+void listProcesses(const ReadFields& fields, std::vector<gp::SharedProcess>& windows, Index p, Index n) {
+  WindowTable table;
+  listWindows(fields, table);
+  fields.require(describesEachWindow(table));
   for (std::size_t w = 0; w < table.functions.size(); ++w) {
-    windows.emplace_back(take(table, w, p, n, numbers));
+    windows.emplace_back(take(table, w, p, n));
   }
-  return windows;
+}
+
+template <class Fields, class Forward>
+void listForward(const Fields& fields, Forward& surrogate) {
+  fields("center", surrogate.center);
+  fields("projection", surrogate.projection);
+  fields("points", surrogate.points);
+  fields("scores", surrogate.scores);
+  fields("error_correlation", surrogate.error_correlation);
+  fields("error_variance", surrogate.error_variance);
+  listProcesses(fields.in("windows"), surrogate.windows, surrogate.points.rows(), surrogate.points.cols());
+}
+
+template <class Fields, class Prior>
+void listPrior(const Fields& fields, Prior& prior) {
+  fields("mean", prior.mean);
+  fields("relative", prior.relative);
+  fields("within", prior.within);
+  fields("shift", prior.shift);
+  fields("stddev", prior.stddev);
+}
+
+template <class Fields, class Validation>
+void listValidation(const Fields& fields, Validation& validation) {
+  fields("stddev_scale", validation.stddev_scale);
+  fields("coverage95", validation.coverage95);
+  fields("residual_correlation", validation.residual_correlation);
+  fields("log_density", validation.log_density);
+  fields("limit_scale", validation.limit_scale);
+  fields("limit_ratio", validation.limit_ratio);
+  fields.converted(
+      "status", validation.status, [](SurrogateStatus status) { return static_cast<double>(status); },
+      [](double read) { return read == 0.0 ? SurrogateStatus::kOk : SurrogateStatus::kEstimatorLimited; });
+  auto& factors = validation.interval_factors;
+  if (fields.has("interval_factor95", factors.isGiven())) {
+    const auto to_vector = [](const MatrixXd& of) { return VectorXd(of.col(0)); };
+    const auto to_matrix = [](const VectorXd& of) { return MatrixXd(of); };
+    fields.converted("interval_factor50", factors.of50, to_vector, to_matrix);
+    fields.converted("interval_factor95", factors.of95, to_vector, to_matrix);
+  }
+}
+
+template <class Fields, class Map>
+void listMap(const Fields& fields, Map& surrogate) {
+  fields("box/center", surrogate.center);
+  fields("box/half_width", surrogate.half_width);
+  fields("parameters", surrogate.parameters);
+  fields("unknown", surrogate.unknown);
 }
 
 bool fitsTogether(const ForwardSurrogate& surrogate) {
@@ -195,69 +217,44 @@ bool fitsTogether(const Surrogate& surrogate) {
          surrogate.validation.limit_scale.size() == surrogate.parameters;
 }
 
-void requireFit(bool fits, const Hdf5Reader& file, const std::string& group) {
-  if (!fits) {
-    throw std::runtime_error(file.getPath() + ": " + group + " has parts that do not fit each other");
-  }
-}
-
 }  // namespace
 
 void writeForward(Hdf5Writer& file, const std::string& group, const ForwardSurrogate& surrogate) {
-  file.write(group + "/center", surrogate.center);
-  file.writeSamples(group + "/projection", surrogate.projection);
-  file.writeSamples(group + "/points", surrogate.points);
-  file.writeSamples(group + "/scores", surrogate.scores);
-  file.writeSamples(group + "/error_correlation", surrogate.error_correlation);
-  file.write(group + "/error_variance", surrogate.error_variance);
-  writeWindows(file, group + "/windows", surrogate.windows);
+  listForward(WrittenFields(file, group), surrogate);
 }
 
 ForwardSurrogate readForward(const Hdf5Reader& file, const std::string& group) {
   ForwardSurrogate surrogate;
-  surrogate.center = file.readVector(group + "/center");
-  surrogate.projection = file.readSamples(group + "/projection");
-  surrogate.points = file.readSamples(group + "/points");
-  surrogate.scores = file.readSamples(group + "/scores");
-  surrogate.error_correlation = file.readSamples(group + "/error_correlation");
-  surrogate.error_variance = file.readVector(group + "/error_variance");
-  surrogate.windows = readWindows(file, group + "/windows", surrogate.points.rows(), surrogate.points.cols());
-  requireFit(fitsTogether(surrogate), file, group);
+  const ReadFields fields(file, group);
+  listForward(fields, surrogate);
+  fields.require(fitsTogether(surrogate));
   return surrogate;
 }
 
 void writePrior(Hdf5Writer& file, const std::string& group, const BoxPrior& prior) {
   if (!prior.isUniform()) {
-    file.write(group + "/mean", prior.mean);
-    file.writeSamples(group + "/relative", prior.relative);
-    file.writeSamples(group + "/within", prior.within);
-    file.write(group + "/shift", prior.shift);
-    file.write(group + "/stddev", prior.stddev);
+    listPrior(WrittenFields(file, group), prior);
   }
 }
 
 BoxPrior readPrior(const Hdf5Reader& file, const std::string& group, Index unknown) {
-  if (!file.contains(group + "/mean")) {
+  const ReadFields fields(file, group);
+  if (!fields.has("mean", true)) {
     return makeUniformPrior(unknown);
   }
-  BoxPrior prior{file.readVector(group + "/mean"), file.readSamples(group + "/relative"),
-                 file.readSamples(group + "/within"), file.readVector(group + "/shift"),
-                 file.readVector(group + "/stddev")};
+  BoxPrior prior;
+  listPrior(fields, prior);
   const auto is_square = [&](const MatrixXd& matrix) {
     return matrix.rows() == unknown && matrix.cols() == unknown;
   };
-  requireFit(prior.count() == unknown && is_square(prior.relative) && is_square(prior.within) &&
-                 prior.shift.size() == unknown && prior.stddev.size() == unknown,
-             file, group);
+  fields.require(prior.count() == unknown && is_square(prior.relative) && is_square(prior.within) &&
+                 prior.shift.size() == unknown && prior.stddev.size() == unknown);
   return prior;
 }
 
 void writeSurrogate(Hdf5Writer& file, const std::string& group, const Surrogate& surrogate) {
   writeForward(file, group + "/forward", *surrogate.forward);
-  file.write(group + "/box/center", surrogate.center);
-  file.write(group + "/box/half_width", surrogate.half_width);
-  file.write(group + "/parameters", static_cast<double>(surrogate.parameters));
-  file.write(group + "/unknown", static_cast<double>(surrogate.unknown));
+  listMap(WrittenFields(file, group), surrogate);
   writePrior(file, group + "/prior", surrogate.prior);
   writeValidation(file, group + "/validation", surrogate.validation);
 }
@@ -265,43 +262,22 @@ void writeSurrogate(Hdf5Writer& file, const std::string& group, const Surrogate&
 Surrogate readSurrogate(const Hdf5Reader& file, const std::string& group) {
   Surrogate surrogate;
   surrogate.forward = std::make_shared<const ForwardSurrogate>(readForward(file, group + "/forward"));
-  surrogate.center = file.readVector(group + "/box/center");
-  surrogate.half_width = file.readVector(group + "/box/half_width");
-  surrogate.parameters = file.readCount(group + "/parameters");
-  surrogate.unknown = file.readCount(group + "/unknown");
+  const ReadFields fields(file, group);
+  listMap(fields, surrogate);
   surrogate.validation = readValidation(file, group + "/validation");
-  requireFit(fitsTogether(surrogate), file, group);
+  fields.require(fitsTogether(surrogate));
   surrogate.prior = readPrior(file, group + "/prior", surrogate.unknown);
   return surrogate;
 }
 
 void writeValidation(Hdf5Writer& file, const std::string& group, const SurrogateValidation& validation) {
-  file.write(group + "/stddev_scale", validation.stddev_scale);
-  file.write(group + "/coverage95", validation.coverage95);
-  file.writeSamples(group + "/residual_correlation", validation.residual_correlation);
-  file.write(group + "/log_density", validation.log_density);
-  file.write(group + "/limit_scale", validation.limit_scale);
-  file.write(group + "/limit_ratio", validation.limit_ratio);
-  file.write(group + "/status", static_cast<double>(validation.status));
-  if (validation.interval_factors.isGiven()) {
-    file.write(group + "/interval_factor50", validation.interval_factors.of50.col(0));
-    file.write(group + "/interval_factor95", validation.interval_factors.of95.col(0));
-  }
+  listValidation(WrittenFields(file, group), validation);
 }
 
 SurrogateValidation readValidation(const Hdf5Reader& file, const std::string& group) {
-  return {
-      file.readVector(group + "/stddev_scale"),
-      file.readVector(group + "/coverage95"),
-      file.readSamples(group + "/residual_correlation"),
-      file.readNumber(group + "/log_density"),
-      file.readVector(group + "/limit_scale"),
-      file.readVector(group + "/limit_ratio"),
-      file.readNumber(group + "/status") == 0.0 ? SurrogateStatus::kOk : SurrogateStatus::kEstimatorLimited,
-      file.contains(group + "/interval_factor95")
-          ? IntervalFactors{file.readVector(group + "/interval_factor50"),
-                            file.readVector(group + "/interval_factor95")}
-          : IntervalFactors{}};
+  SurrogateValidation validation;
+  listValidation(ReadFields(file, group), validation);
+  return validation;
 }
 
 bool fitsParameters(const SurrogateValidation& validation, Eigen::Index parameters) {

@@ -2,13 +2,17 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
+#include "framework/estimation/folds.hpp"
 #include "framework/estimation/surrogate/cross_validation.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/surrogate/predicted_limit.hpp"
+#include "framework/experiment/inverse_map_spec.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -19,24 +23,23 @@ using Eigen::MatrixXd;
 
 /// No more than an exact process is worth: the time grows with their number cubed.
 SurrogateSamples takeFirst(const SurrogateSamples& samples) {
-  constexpr Index kMax = 2000;
-  const Index n = samples.points.cols();
-  if (n <= kMax) {
+  const Index n = samples.points.cols(), most = NetworkMapSpec::kMaxOfSurrogate;
+  if (n <= most) {
     return samples;
   }
   SurrogateSamples first{samples.infos,
-                         samples.points.leftCols(kMax),
-                         samples.clean_features.leftCols(kMax),
+                         samples.points.leftCols(most),
+                         samples.clean_features.leftCols(most),
                          samples.noise_covariance,
                          MatrixXd(samples.measured.rows(), 0),
                          samples.slopes};
   if (!first.slopes.empty()) {
-    first.slopes.resize(kMax);
+    first.slopes.resize(most);
   }
   const Index draws = samples.measured.cols() / n;
-  first.measured.resize(samples.measured.rows(), kMax * draws);
+  first.measured.resize(samples.measured.rows(), most * draws);
   for (Index draw = 0; draw < draws; ++draw) {
-    first.measured.middleCols(draw * kMax, kMax) = samples.measured.middleCols(draw * n, kMax);
+    first.measured.middleCols(draw * most, most) = samples.measured.middleCols(draw * n, most);
   }
   return first;
 }
@@ -75,8 +78,7 @@ std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateVal
 
 std::string findSurrogateObstacle(const ModelSpec& model, Index simulations,
                                   const NoiseCovariance& noise_covariance) {
-  constexpr Index kMin = 20;  // five folds of which are a cross-validation
-  if (simulations < kMin + 2 * static_cast<Index>(collectSampled(model).size())) {
+  if (simulations < countLeastSimulations(static_cast<Index>(collectSampled(model).size()))) {
     return "a surrogate needs at least 20 training samples, and two a parameter more";
   }
   return noise_covariance.diagonal().minCoeff() > 0.0 ? "" : "the noise of a feature is 0";
@@ -119,6 +121,38 @@ SurrogateTraining trainSurrogate(const ModelSpec& model, const SurrogateSamples&
   }
   training.warnings = listWarnings(model, surrogate.validation);
   return training;
+}
+
+using Eigen::VectorXd;
+
+namespace {
+
+VectorXd calcMeanErrors(const MatrixXd& mean, const MatrixXd& truth) {
+  return (mean - truth).cwiseAbs().rowwise().mean();
+}
+
+}  // namespace
+
+SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples& samples,
+                                  const ForwardSamples& forward, const ForwardChoices& choices,
+                                  const HeldOut& held_out, const TrainingControl& control) {
+  constexpr Index kMaxInferred = 200;
+  const Index n = samples.points.cols(), half = n / 2, known = samples.points.rows() - whole.unknown;
+  if (half < countLeastSimulations(samples.points.rows())) {
+    return {};
+  }
+  const Surrogate fitted =
+      fitSimilar(whole, selectSimulations(forward, listRange(0, half)), choices, control);
+  const std::vector<Index> others = listRange(half, std::min(n - half, kMaxInferred));
+  const MatrixXd inputs = samples.points(Eigen::all, others).bottomRows(known);
+  const Estimates found = fitted.invert(samples.measured(Eigen::all, others), inputs, control.threads);
+  gp::throwIfStopped(control.stop);
+  const MatrixXd truth = held_out.truth(Eigen::all, others);
+  const VectorXd of_half = calcMeanErrors(found.mean, truth);
+  const VectorXd of_folds = calcMeanErrors(held_out.predictions.mean(Eigen::all, others), truth);
+  const double doublings =
+      std::log2((1.0 - 1.0 / kFolds) * static_cast<double>(n) / static_cast<double>(half));
+  return {half, n, of_folds.cwiseQuotient(of_half).array().pow(1.0 / doublings)};
 }
 
 }  // namespace twinmap

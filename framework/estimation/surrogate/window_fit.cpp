@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "framework/data/reduction/principal_components.hpp"
+#include "framework/estimation/folds.hpp"
 #include "kernels/gp/sparse/inducing_points.hpp"
 #include "kernels/surrogate/fit_slopes.hpp"
 #include "kernels/surrogate/joint_precision.hpp"
@@ -20,7 +20,6 @@ using Eigen::MatrixXd;
 
 WindowFit findScores(const FeatureWindow& rows, const WhitenedSamples& whitened) {
   WindowFit window;
-  constexpr double kSmallestStddev = 0.2;
   const MatrixXd features = whitened.features(rows, Eigen::all);
   const PrincipalComponents components = calcPrincipalComponents(features);
   const Index count =
@@ -98,11 +97,10 @@ double calcError(const MatrixXd& residual, const MatrixXd& directions) {
 }
 
 WindowChoice chooseByValues(FeatureWindow rows, const WhitenedSamples& samples, gp::StopFlag stop) {
-  constexpr Index kMaxPoints = 300;  // as many as the search takes
   const WindowFit window = findScores(rows, samples);
   WindowChoice choice{std::move(rows), gp::chooseOnSpread(samples.points, window.scores, stop)};
   const std::vector<Index> taken =
-      gp::spreadIndices(samples.points.cols(), std::min(kMaxPoints, samples.points.cols()));
+      gp::spreadIndices(samples.points.cols(), std::min(gp::kSearchPoints, samples.points.cols()));
   const MatrixXd points = samples.points(Eigen::all, taken), scores = window.scores(taken, Eigen::all);
   gp::LeftOutDensity density(points, scores, choice.by_values.structure);
   double ignored = 0.0;
@@ -166,9 +164,7 @@ std::optional<gp::JointPrecision> fitOnce(const MatrixXd& points, bool by_precis
                                           WindowFit& window) {
   std::optional<gp::JointPrecision> precision =
       by_precision ? factoriseWithSlopes(points, window) : std::nullopt;
-  std::vector<Index> all(static_cast<std::size_t>(points.cols()));
-  std::iota(all.begin(), all.end(), Index{0});
-  if (!precision || !fitByPrecision(*precision, all, points, window)) {
+  if (!precision || !fitByPrecision(*precision, listRange(0, points.cols()), points, window)) {
     fitByChoice(points, stop, window);
   }
   return precision;

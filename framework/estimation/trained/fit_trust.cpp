@@ -4,8 +4,7 @@
 #include <stdexcept>
 
 #include "framework/base/random/random.hpp"
-#include "framework/data/reduction/scaling_steps.hpp"
-#include "framework/estimation/run_tasks.hpp"
+#include "framework/data/reduction/affine_step.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -49,15 +48,13 @@ void sort(VectorXd& values) {
 /// the inferred standard deviation.
 void fitReferences(const TrustTraining& training, const Estimator& map, const TrainingControl& control,
                    TrustModel& model) {
-  constexpr Index kChunk = 16;  // measurements that share buffers
   const Index count = training.measured.cols();
   VectorXd chi_squares(count), anomalies(count), distances(count);
-  const auto judge_chunk = [&](std::size_t chunk) {
+  runChunks(control.threads, count, [&](Index first, Index end) {
     gp::throwIfStopped(control.stop);
     const std::unique_ptr<Estimator::Workspace> inferring = map.makeWorkspace();
     TrustWorkspace judging(model);
-    const Index first = static_cast<Index>(chunk) * kChunk;
-    for (Index i = first; i < std::min(count, first + kChunk); ++i) {
+    for (Index i = first; i < end; ++i) {
       const auto features = training.measured.col(i);
       const auto known = training.known.col(i);
       const Estimate& estimate = map.inferMean(features, known, *inferring);
@@ -66,8 +63,7 @@ void fitReferences(const TrustTraining& training, const Estimator& map, const Tr
       anomalies[i] = trust.anomaly.score;
       distances[i] = trust.distance;
     }
-  };
-  runTasks(control.threads, static_cast<std::size_t>((count + kChunk - 1) / kChunk), judge_chunk);
+  });
   sort(chi_squares);
   sort(anomalies);
   model.chi_square.sorted = std::move(chi_squares);
@@ -80,14 +76,12 @@ void fitReferences(const TrustTraining& training, const Estimator& map, const Tr
 ReferenceDistribution calcNoiseAnomalys(const std::vector<ResidualRun>& runs, Index residuals,
                                         std::uint64_t seed, int threads) {
   constexpr Index kDraws = 4000;  // the 0.25 % quantile, half of half of the usual level, to a third
-  constexpr Index kChunk = 250;
   const RandomStream random(seed, RandomPurpose::kNoiseAnomaly);
   ReferenceDistribution anomalies;
   anomalies.sorted.resize(kDraws);
-  runTasks(threads, kDraws / kChunk, [&](std::size_t chunk) {
+  runChunks(threads, kDraws, [&](Index first, Index end) {
     VectorXd noise(residuals);
-    const Index first = static_cast<Index>(chunk) * kChunk;
-    for (Index draw = first; draw < first + kChunk; ++draw) {
+    for (Index draw = first; draw < end; ++draw) {
       random.drawNormals(static_cast<std::uint64_t>(draw), 0, noise.data(),
                          static_cast<std::size_t>(residuals));
       anomalies.sorted[draw] = findAnomaly(noise, runs).score;

@@ -7,8 +7,8 @@
 
 #include "framework/data/features/feature_block.hpp"
 #include "framework/data/features/noise_covariance.hpp"
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/trained/trust_model.hpp"
-#include "framework/estimation/training_control.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {

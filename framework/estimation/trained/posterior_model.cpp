@@ -22,11 +22,10 @@ std::string name(const std::vector<Index>& quantities, const std::vector<Paramet
 
 std::string describeRanks(const RankRecord& posteriors, const std::vector<ParameterSpec>& parameters) {
   const std::vector<Index> uneven = posteriors.listUneven();
-  return uneven.empty() ? ""
-                        : fmt::format(
-                              "true values of the run's {} test samples rank unevenly among its "
-                              "draws: {}",
-                              posteriors.ranked, name(uneven, parameters));
+  return uneven.empty()
+             ? ""
+             : fmt::format("true values of the run's {} test samples rank unevenly among its draws: {}",
+                           posteriors.ranked, name(uneven, parameters));
 }
 
 }  // namespace

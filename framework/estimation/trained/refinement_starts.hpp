@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "framework/estimation/refined/refine.hpp"
 #include "framework/estimation/trained/trust_model.hpp"
 #include "framework/experiment/experiment_spec.hpp"

@@ -12,8 +12,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kSmallestStddev = 0.2;  // of the noise: what moves less counts as noise
-
 /// Appends the components of what the scores leave of one window, `rest` (k x n).
 void addUnmodelled(const FeatureWindow& rows, const MatrixXd& rest, ResidualSpace& space) {
   const PrincipalComponents components = calcPrincipalComponents(rest(rows, Eigen::all));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "framework/estimation/informativeness.hpp"
+#include "framework/estimation/estimate.hpp"
 
 namespace twinmap {
 

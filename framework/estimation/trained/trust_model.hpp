@@ -2,15 +2,13 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "framework/estimation/estimator.hpp"
 #include "framework/estimation/surrogate/score_inversion.hpp"
 #include "framework/estimation/trained/anomaly.hpp"
-#include "framework/estimation/trained/coverage_record.hpp"
-#include "framework/estimation/trained/rank_record.hpp"
 #include "framework/estimation/trained/residual_space.hpp"
+#include "framework/estimation/trained/test_records.hpp"
 
 namespace twinmap {
 

@@ -49,8 +49,7 @@ std::string addWindow(const gp::SharedProcess& process, int index, Index first, 
                                        : "{0, 0, 0, 0, 0}";
   return fmt::format(
       "{0}, {1}, {2}, {3}, {4}, {5},\n   {6}, {7}_length_scales, {7}_weights, {7}_coefficients, "
-      "{7}_amplitudes, "
-      "{7}_ratios",
+      "{7}_amplitudes, {7}_ratios",
       first, process.getFunctionCount(), leading, parts.structure.trend == gp::Trend::kQuadratic ? 1 : 0,
       terms, smooth, own_variance, name);
 }

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 
 namespace twinmap {
@@ -139,16 +138,15 @@ void addProfiles(const History& history, Page& page) {
     return;
   }
   page.tables[kProfiles] = makeProfilesTable(history);
-  Figure figure{
-      "profiles",
-      "Profile likelihoods",
-      "Each parameter is held at a value, and the others are fitted anew: how much less likely the "
-      "best fit becomes. Above the dashed line at -1.92 is a normal 95 % interval; what stays near 0 "
-      "is a direction that the measurement leaves open.",
-      kProfiles,
-      {},
-      {},
-      0};
+  Figure figure{"profiles",
+                "Profile likelihoods",
+                "Each parameter is held at a value, and the others are fitted anew: how much less likely the "
+                "best fit becomes. Above the dashed line at -1.92 is a normal 95 % interval; what stays near "
+                "0 is a direction that the measurement leaves open.",
+                kProfiles,
+                {},
+                {},
+                0};
   for (const ParameterSpec& parameter : history.parameters) {
     figure.panels.push_back({"profile", {{"name", parameter.name.text}, {"label", makeLabel(parameter)}}});
   }

@@ -4,7 +4,6 @@
 
 #include "framework/experiment/check/known_names.hpp"
 #include "framework/report/sections/calibration_tables.hpp"
-#include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
 
 namespace twinmap {
@@ -14,17 +13,16 @@ constexpr int kBins = 10;  // of the PIT histogram
 
 Figure makeReliability(const std::vector<std::string>& names, int n, Page& page) {
   page.tables["reliability-band"] = makeReliabilityBand(n);
-  return {
-      "reliability",
-      "Reliability",
-      fmt::format("A line above the diagonal means intervals wider than needed, one below means "
-                  "overconfidence; within the grey band (95 % for each level, {} samples) the difference may "
-                  "be chance.",
-                  n),
-      "reliability",
-      {{"reliability", {}, {{"parameters", names}}}},
-      {},
-      1};
+  return {"reliability",
+          "Reliability",
+          fmt::format(
+              "A line above the diagonal means intervals wider than needed, one below means overconfidence; "
+              "within the grey band (95 % for each level, {} samples) the difference may be chance.",
+              n),
+          "reliability",
+          {{"reliability", {}, {{"parameters", names}}}},
+          {},
+          1};
 }
 
 /// Counts of the PIT in equal bins, with the band of a uniform histogram.
@@ -34,15 +32,14 @@ Panel makePitPanel(const std::string& name, std::size_t p, int n) {
 }
 
 Figure makePit(const std::vector<std::string>& names, int n) {
-  Figure figure{
-      "pit",
-      "PIT histogram",
-      "The probability that the estimate gave to values below the true one: flat within the grey band where "
-      "calibrated, a U where the sd is too small, a hump where it is too large.",
-      "samples",
-      {},
-      {},
-      names.size() >= 4 ? 4 : 0};
+  Figure figure{"pit",
+                "PIT histogram",
+                "The probability that the estimate gave to values below the true one: flat within the grey "
+                "band where calibrated, a U where the sd is too small, a hump where it is too large.",
+                "samples",
+                {},
+                {},
+                names.size() >= 4 ? 4 : 0};
   for (std::size_t p = 0; p < names.size(); ++p) {
     figure.panels.push_back(makePitPanel(names[p], p, n));
   }

@@ -90,16 +90,15 @@ std::string makeIdentified(const CsvTable& identified) {
     }
   }
   return makeElement("h3", "What is identified") + "\n" +
-         makeHtmlTable(
-             "identified-table",
-             "Of these parameters the data determine these expressions; the residual is the sine of "
-             "the angle to what is determined, 0 where the expression is exact.",
-             identified,
-             {{"parameters", "parameters"},
-              {"undetermined", "undetermined"},
-              {"expression", "identified"},
-              {"unit", "unit"},
-              {"residual", "residual", 2}}) +
+         makeHtmlTable("identified-table",
+                       "Of these parameters the data determine these expressions; the residual is the sine "
+                       "of the angle to what is determined, 0 where the expression is exact.",
+                       identified,
+                       {{"parameters", "parameters"},
+                        {"undetermined", "undetermined"},
+                        {"expression", "identified"},
+                        {"unit", "unit"},
+                        {"residual", "residual", 2}}) +
          (yaml.empty() ? ""
                        : makeParagraph("In the experiment file, to have them in all tables:") +
                              makeElement("pre", escapeHtml("derived:\n" + yaml)));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/base/text/number_text.hpp"
 #include "framework/experiment/parameter_figures.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/sections/sections.hpp"
@@ -89,15 +88,14 @@ Panel makeRunsPanel(const std::string& figure, const std::string& parameter,
 
 Figure makeErrorFigure(const CsvTable& metrics, const std::vector<std::string>& parameters,
                        const std::vector<std::string>& labels) {
-  Figure figure{
-      "errors-side-by-side",
-      "Errors side by side",
-      "Further left is better; bars span \u00b12 standard errors where the runs state them, ticks are the "
-      "information limit.",
-      kComparison,
-      {},
-      {},
-      2};
+  Figure figure{"errors-side-by-side",
+                "Errors side by side",
+                "Further left is better; bars span \u00b12 standard errors where the runs state them, ticks "
+                "are the information limit.",
+                kComparison,
+                {},
+                {},
+                2};
   for (const std::string& parameter : parameters) {
     figure.panels.push_back(makeRunsPanel(figure.name, parameter, labels));
     if (!hasLimit(metrics, parameter)) {

@@ -44,15 +44,14 @@ void addCurves(const RunFolder& run, Page& page) {
     if (std::find(names.begin(), names.end(), curve.name.text) == names.end()) {
       continue;
     }
-    Figure figure{
-        fmt::format("curve-{}", index),
-        fmt::format("{} over {}", curve.name.text, curve.over.text),
-        "Dashed: the true curve of a test sample; solid: the estimated one. At each point the band is the "
-        "95 % interval.",
-        kCurves,
-        {},
-        {},
-        static_cast<int>(samples.size() > 1 ? samples.size() : 0)};
+    Figure figure{fmt::format("curve-{}", index),
+                  fmt::format("{} over {}", curve.name.text, curve.over.text),
+                  "Dashed: the true curve of a test sample; solid: the estimated one. At each point the band "
+                  "is the 95 % interval.",
+                  kCurves,
+                  {},
+                  {},
+                  static_cast<int>(samples.size() > 1 ? samples.size() : 0)};
     for (const std::string& sample : samples) {
       figure.panels.push_back(makeCurvePanel(curve, sample, index));
     }

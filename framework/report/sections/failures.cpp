@@ -87,15 +87,14 @@ void addFailures(const RunFolder& run, Section& section, Page& page) {
   }
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   const std::size_t last = parameters.size() - 1;
-  Figure figure{
-      "failures",
-      "Failures: where within the bounds",
-      "Crosses are the samples that could not be simulated, training and test; dots are test samples that "
-      "could. Crosses along an edge ask for tighter bounds there.",
-      "failures",
-      {panel},
-      {},
-      1};
+  Figure figure{"failures",
+                "Failures: where within the bounds",
+                "Crosses are the samples that could not be simulated, training and test; dots are test "
+                "samples that could. Crosses along an edge ask for tighter bounds there.",
+                "failures",
+                {panel},
+                {},
+                1};
   figure.choices = {makeParameterChoice("x", "across", parameters, last == 0 ? 0 : last - 1),
                     makeParameterChoice("y", "up", parameters, last)};
   addFigure(std::move(figure), section);

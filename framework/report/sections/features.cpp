@@ -100,8 +100,8 @@ void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& pla
                       Page& page) {
   if (run.features.empty()) {
     section.html += makeParagraph(
-        "Sensitivities of the features are not in this run: they come with the information "
-        "limit (docs/reference/experiment-file.md, evaluation).",
+        "Sensitivities of the features are not in this run: they come with the information limit "
+        "(docs/reference/experiment-file.md, evaluation).",
         "class=\"quiet\"");
     return;
   }
@@ -113,14 +113,13 @@ void addSensitivities(const RunFolder& run, const std::vector<FeaturePlace>& pla
     }
   }
   page.tables["sensitivities"] = table.make("parameter", "sensitivity");
-  addFigure(makeSeriesFigure(
-                "sensitivities", "Sensitivity of the features",
-                "How far a feature moves, in units of its noise sd, when a parameter crosses its whole "
-                "range (root mean square over the test set): the axis is logarithmic above 1. Where a line "
-                "is below 1, that feature alone "
-                "says nothing about the parameter.",
-                collectOutputs(places), "parameters", names),
-            section);
+  addFigure(
+      makeSeriesFigure("sensitivities", "Sensitivity of the features",
+                       "How far a feature moves, in units of its noise sd, when a parameter crosses its "
+                       "whole range (root mean square over the test set): the axis is logarithmic above 1. "
+                       "Where a line is below 1, that feature alone says nothing about the parameter.",
+                       collectOutputs(places), "parameters", names),
+      section);
 }
 
 void addLoadings(const RunFolder& run, const std::vector<FeaturePlace>& places, Section& section,
@@ -142,14 +141,13 @@ void addLoadings(const RunFolder& run, const std::vector<FeaturePlace>& places, 
   page.tables["loadings"] = table.make("component", "loading");
   const std::vector<std::string> outputs = collectOutputs(places);
   if (!outputs.empty()) {
-    addFigure(
-        makeSeriesFigure(
-            "loadings", "Loadings of the components",
-            fmt::format("What the estimator sees of a response: each component is the sum of the scaled "
-                        "features weighted by these loadings ({} of {} components are drawn).",
-                        shown, projection.rows()),
-            outputs, "components", names),
-        section);
+    addFigure(makeSeriesFigure(
+                  "loadings", "Loadings of the components",
+                  fmt::format("What the estimator sees of a response: each component is the sum of the "
+                              "scaled features weighted by these loadings ({} of {} components are drawn).",
+                              shown, projection.rows()),
+                  outputs, "components", names),
+              section);
   }
 }
 

@@ -31,16 +31,15 @@ void addRelevance(const RunFolder& run, Section& section, Page& page) {
   table.add("length_scale", length_scale);
   table.add("relevance", relevance);
   page.tables["relevance"] = table;
-  addFigure(
-      {"relevance",
-       "Relevance of the inputs",
-       "The shortest length scale of a parameter's process over that of each input: 1 for the input on which "
-       "the parameter depends most sharply, near 0 for one that hardly matters.",
-       "relevance",
-       {{"relevance", {}, {{"height", calcHeatHeight(names.size())}}}},
-       {},
-       1},
-      section);
+  addFigure({"relevance",
+             "Relevance of the inputs",
+             "The shortest length scale of a parameter's process over that of each input: 1 for the input on "
+             "which the parameter depends most sharply, near 0 for one that hardly matters.",
+             "relevance",
+             {{"relevance", {}, {{"height", calcHeatHeight(names.size())}}}},
+             {},
+             1},
+            section);
 }
 
 void addCorrelations(const RunFolder& run, Section& section, Page& page) {
@@ -65,8 +64,7 @@ void addCorrelations(const RunFolder& run, Section& section, Page& page) {
   addFigure({"correlations",
              "Correlation of the parameters",
              "How the data tie errors of two parameters together (from the mean Fisher information): near "
-             "\u00b11 the "
-             "response determines only a combination of them.",
+             "\u00b11 the response determines only a combination of them.",
              "correlations",
              {{"correlations", {}, {{"height", calcHeatHeight(names.size())}}}},
              {},

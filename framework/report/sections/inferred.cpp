@@ -44,12 +44,11 @@ Figure makeFigure(const RunFolder& run, bool of_error) {
   figure.name = of_error ? "errors" : "inferred";
   figure.table = "samples";
   figure.title = of_error ? "Error against the true value" : "Estimated against true";
-  figure.help = of_error
-                    ? "Each bar spans \u00b12 sd around the error (estimated \u2212 true); where they are "
-                      "calibrated, about 95 % of the bars cross the dashed line at 0."
-                    : describeDrawnSamples(run) +
-                          "Points on the dashed line are exact; bars span \u00b12 sd. Drag over "
-                          "points, or press one, to highlight the same samples in every figure.";
+  figure.help = of_error ? "Each bar spans \u00b12 sd around the error (estimated \u2212 true); where they "
+                           "are calibrated, about 95 % of the bars cross the dashed line at 0."
+                         : describeDrawnSamples(run) +
+                               "Points on the dashed line are exact; bars span \u00b12 sd. Drag over points, "
+                               "or press one, to highlight the same samples in every figure.";
   figure.columns = count > 1 ? static_cast<int>(std::min<std::size_t>(count, 4)) : 0;
   figure.columns = count == 4 ? 2 : std::min(figure.columns, 3);
   for (std::size_t p = 0; p < count; ++p) {
@@ -103,10 +102,9 @@ Figure makeComponentsFigure(const RunFolder& run) {
   figure.name = kComponents;
   figure.table = kComponents;
   figure.title = "Estimates against true";
-  figure.help =
-      describeDrawnSamples(run) +
-      "Each sample has as many estimates as its mixture has components, the darker the likelier; bars span "
-      "\u00b12 sd. Where several fit, one of them lies on the dashed line.";
+  figure.help = describeDrawnSamples(run) +
+                "Each sample has as many estimates as its mixture has components, the darker the likelier; "
+                "bars span \u00b12 sd. Where several fit, one of them lies on the dashed line.";
   figure.columns = static_cast<int>(std::min<std::size_t>(parameters.size(), 3));
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     figure.panels.push_back(

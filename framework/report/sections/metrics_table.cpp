@@ -90,15 +90,13 @@ void addMetrics(const RunFolder& run, Page& page) {
           {{"metrics-csv", "CSV"}, {"metrics-markdown", "Markdown"}, {"metrics-latex", "LaTeX"}}) +
       makeParagraph(
           "Bias, sd and MARE are the mean, standard deviation and mean absolute value of the relative error "
-          "over "
-          "the test samples; coverage is the fraction of true values within the interval. " +
+          "over the test samples; coverage is the fraction of true values within the interval. " +
               std::string(metrics.hasColumn("limit_pct")
                               ? "The limit is the smallest sd that the noise of the data allows any method. "
                               : "") +
-              (metrics.hasColumn("not_ok")
-                   ? "Not ok is the fraction of the test samples of which twinmap infer says so (refined.csv "
-                     "has its statuses). "
-                   : "") +
+              (metrics.hasColumn("not_ok") ? "Not ok is the fraction of the test samples of which twinmap "
+                                             "infer says so (refined.csv has its statuses). "
+                                           : "") +
               (metrics.hasColumn("sd_pct_se")
                    ? "The digits in parentheses are the Monte Carlo standard error of the last digits."
                    : ""),

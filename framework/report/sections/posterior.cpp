@@ -43,15 +43,14 @@ void addPosterior(const RunFolder& run, Section& section, Page& page) {
     return;
   }
   page.tables[kPosterior] = makePosteriorTable(run.posterior);
-  Figure figure{
-      kPosterior,
-      "Beside the exact posterior",
-      "Circles: the estimator; crosses: the information limit. On the dashed line both agree with the "
-      "posterior, which was sampled by simulation for these test samples.",
-      kPosterior,
-      {},
-      {},
-      0};
+  Figure figure{kPosterior,
+                "Beside the exact posterior",
+                "Circles: the estimator; crosses: the information limit. On the dashed line both agree with "
+                "the posterior, which was sampled by simulation for these test samples.",
+                kPosterior,
+                {},
+                {},
+                0};
   const std::vector<ParameterSpec>& parameters = run.experiment.model.parameters;
   figure.columns = parameters.size() >= 4 ? 4 : 0;
   for (std::size_t p = 0; p < parameters.size(); ++p) {

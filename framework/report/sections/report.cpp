@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/report/sections/samples_table.hpp"

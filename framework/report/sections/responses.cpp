@@ -93,8 +93,7 @@ void addResponses(const RunFolder& run, Page& page) {
         "The " + which + " case, test sample " + findSample(responses, which),
         "Points: the simulated measurement; dashed: the model at the centre of the bounds; solid: the model "
         "at the estimated parameters. Where the updated model is right, 95 % of the residuals lie in the "
-        "grey "
-        "band of \u00b12 noise sd. Drag and scroll to move and zoom the axis of time.",
+        "grey band of \u00b12 noise sd. Drag and scroll to move and zoom the axis of time.",
         kResponses,
         {},
         {},

@@ -52,20 +52,19 @@ void addStarts(const RunFolder& run, Section& section, Page& page) {
   constexpr int kRowHeight = 30, kFrame = 20;
   const std::vector<std::string> names = collectNames(run.experiment.model.parameters);
   page.tables["starts"] = makeStartsTable(run.training);
-  addFigure(
-      {"starts",
-       "Searches for hyperparameters",
-       "Each mark is the end of one search; several at the left mean that different starts agree on the "
-       "optimum, one far to the right ended in a worse one and was discarded.",
-       "starts",
-       {{"starts",
-         {},
-         {{"height", calcHeight(names.size(), kRowHeight, kFrame)},
-          {"furthest", findFurthestStart(run.training)},
-          {"parameters", names}}}},
-       {},
-       1},
-      section);
+  addFigure({"starts",
+             "Searches for hyperparameters",
+             "Each mark is the end of one search; several at the left mean that different starts agree on "
+             "the optimum, one far to the right ended in a worse one and was discarded.",
+             "starts",
+             {{"starts",
+               {},
+               {{"height", calcHeight(names.size(), kRowHeight, kFrame)},
+                {"furthest", findFurthestStart(run.training)},
+                {"parameters", names}}}},
+             {},
+             1},
+            section);
 }
 
 std::string makeTrainingTable(const CsvTable& training) {
@@ -88,8 +87,7 @@ std::string makeTrainingTable(const CsvTable& training) {
                         {"jitter", "jitter", 3}}) +
          makeParagraph(
              "A condition above 1e12 or a jitter above 0 means that the covariance matrix is nearly "
-             "singular: "
-             "raise the lower bound of noise_stddev.",
+             "singular: raise the lower bound of noise_stddev.",
              "class=\"quiet\"");
 }
 
@@ -149,8 +147,8 @@ std::string makeChains(const CsvTable& chains) {
                          chains.getText(0, "cut"), chains.getNumber(0, "acceptance")),
              chains, {{"quantity", "quantity"}, {"r_hat", "R-hat"}, {"effective_draws", "effective draws"}}) +
          makeParagraph(
-             "R-hat is 1 where the chains agree; above 1.05, or with fewer than 100 effective draws, "
-             "they do not know the posterior yet.",
+             "R-hat is 1 where the chains agree; above 1.05, or with fewer than 100 effective draws, they do "
+             "not know the posterior yet.",
              "class=\"quiet\"");
 }
 
@@ -170,11 +168,10 @@ std::string makeLeaveOneOut(CsvTable metrics, std::size_t parameters) {
     return "";
   }
   return makeElement("h3", "Leave-one-out beside test") + "\n" +
-         makeHtmlTable(
-             "loo-table",
-             "Each training sample estimated from the others, without a test set: where both columns agree, "
-             "training alone shows how good the estimator is.",
-             metrics, columns);
+         makeHtmlTable("loo-table",
+                       "Each training sample estimated from the others, without a test set: where both "
+                       "columns agree, training alone shows how good the estimator is.",
+                       metrics, columns);
 }
 
 }  // namespace

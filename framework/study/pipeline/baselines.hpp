@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <string>
-#include <vector>
 
 #include "framework/data/reduction/feature_transform.hpp"
 #include "framework/estimation/estimate.hpp"

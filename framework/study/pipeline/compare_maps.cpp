@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/notice.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/online_timing.hpp"

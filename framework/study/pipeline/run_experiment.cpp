@@ -7,7 +7,6 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/folder_lock.hpp"
 #include "framework/base/log/log.hpp"
-#include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/data/reduction/reduced_simulator.hpp"

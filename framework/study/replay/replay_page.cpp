@@ -15,7 +15,6 @@
 #include "framework/inference/stated_values.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/report/estimate_panel.hpp"
-#include "framework/report/figure.hpp"
 #include "framework/report/html.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/sections/verdict.hpp"
@@ -174,8 +173,8 @@ std::string makeNuisanceTable(const ModelSpec& model, const Replay& replay) {
   return rows.empty()
              ? ""
              : makeHtmlTable("nuisance-table",
-                             "Nuisance parameters, fitted to the replayed measurement for either "
-                             "model, so that the comparison is fair.",
+                             "Nuisance parameters, fitted to the replayed measurement for either model, so "
+                             "that the comparison is fair.",
                              {"nuisance parameter", "unit", "updated", "nominal", "estimated", "sd"}, rows);
 }
 
@@ -189,13 +188,12 @@ std::string makeFitHtml(const Replay& replay) {
       rows.back().push_back(makeNumberCell(fits[row][column], kDigits));
     }
   }
-  return makeHtmlTable(
-      "fit-table",
-      "NRMSE: rms of the residual over rms of the measured output about its mean. Residuals in standard "
-      "deviations of the noise: where the model is right, their rms is about 1.",
-      {"output", "NRMSE %", "rms residual / sd", "largest", "nominal NRMSE %", "nominal rms / sd",
-       "nominal largest"},
-      rows);
+  return makeHtmlTable("fit-table",
+                       "NRMSE: rms of the residual over rms of the measured output about its mean. Residuals "
+                       "in standard deviations of the noise: where the model is right, their rms is about 1.",
+                       {"output", "NRMSE %", "rms residual / sd", "largest", "nominal NRMSE %",
+                        "nominal rms / sd", "nominal largest"},
+                       rows);
 }
 
 DataTable makeTable(const Replay& replay, Index output) {
@@ -223,12 +221,9 @@ DataTable makeTable(const Replay& replay, Index output) {
 std::string makeHelp(const Replay& replay) {
   std::string help =
       "Points: measured; dashed: the nominal model, at the centre of the bounds; solid: the updated model, "
-      "with "
-      "the "
-      "95 % band that the uncertainty of the parameters leaves. Below: measured minus updated; where the "
-      "updated model is right, 95 % lie in the grey band of \u00b12 noise sd. Drag and scroll to move and "
-      "zoom "
-      "the axis of time, double-click to take it back.";
+      "with the 95 % band that the uncertainty of the parameters leaves. Below: measured minus updated; "
+      "where the updated model is right, 95 % lie in the grey band of \u00b12 noise sd. Drag and scroll to "
+      "move and zoom the axis of time, double-click to take it back.";
   if (replay.layout.times.size() > kMaxTimes) {
     help += " Not all times are drawn; replay.csv has them all.";
   }

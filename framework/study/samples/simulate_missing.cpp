@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <vector>
 
-#include "framework/study/samples/chunk_saver.hpp"
 #include "framework/study/samples/model_store.hpp"
 
 namespace twinmap {
@@ -14,6 +16,110 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+
+/// Collects finished samples from any thread and writes them in chunks; meanwhile the other threads go on.
+class ChunkSaver {
+ public:
+  ChunkSaver(TrajectoryStore& store, const MissingOptions& options, const SimulationProgress& counts);
+
+  /// Samples first .. first + count - 1 of `all` are finished. Writes a chunk if it is time.
+  void add(const Trajectories& all, int first, int count);
+  /// Writes what waits.
+  void flush();
+
+  const SimulationProgress& getCounts() const { return counts_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  struct Sample {
+    Eigen::VectorXd parameters, response;
+    SampleStatus status;
+  };
+
+  void addOne(const Trajectories& all, int sample);
+  bool isDue() const;
+  /// All that waits if a chunk is due, else nothing.
+  std::vector<Sample> takeDue();
+  void write(const std::vector<Sample>& samples);
+
+  TrajectoryStore& store_;
+  const MissingOptions& options_;
+  std::size_t chunk_samples_;
+  std::mutex mutex_;
+  SimulationProgress counts_;
+  std::vector<Sample> waiting_;
+  Clock::time_point last_chunk_ = Clock::now();
+};
+
+/// As many samples as asked for, but not above 32 MiB, for samples may be of any size.
+std::size_t chooseChunkSamples(const TrajectoryStore& store, const MissingOptions& options) {
+  constexpr std::uint64_t kMaxBytes = 32u << 20;
+  const std::uint64_t fitting = kMaxBytes / calcChunkSize(store.getShape(), 1);
+  const auto wanted = static_cast<std::uint64_t>(std::max(options.chunk_samples, 1));
+  return std::clamp<std::uint64_t>(fitting, 1, wanted);
+}
+
+ChunkSaver::ChunkSaver(TrajectoryStore& store, const MissingOptions& options,
+                       const SimulationProgress& counts)
+    : store_(store), options_(options), chunk_samples_(chooseChunkSamples(store, options)), counts_(counts) {}
+
+void ChunkSaver::addOne(const Trajectories& all, int sample) {
+  waiting_.push_back({all.parameters.col(sample), all.responses.col(sample), all.statuses[sample]});
+  ++counts_.simulated;
+  counts_.failed += all.statuses[sample].ok ? 0 : 1;
+  counts_.implicit += all.statuses[sample].ok && all.statuses[sample].stiff_retry ? 1 : 0;
+  if (options_.progress) {
+    options_.progress(counts_);
+  }
+}
+
+bool ChunkSaver::isDue() const {
+  const std::chrono::duration<double> waited = Clock::now() - last_chunk_;
+  return waiting_.size() >= chunk_samples_ || waited.count() >= options_.chunk_seconds;
+}
+
+std::vector<ChunkSaver::Sample> ChunkSaver::takeDue() {
+  std::vector<Sample> taken;
+  if (isDue()) {
+    taken.swap(waiting_);
+    last_chunk_ = Clock::now();
+  }
+  return taken;
+}
+
+void ChunkSaver::add(const Trajectories& all, int first, int count) {
+  std::vector<Sample> due;
+  {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    for (int sample = first; sample < first + count; ++sample) {
+      addOne(all, sample);
+    }
+    due = takeDue();
+  }
+  write(due);
+}
+
+void ChunkSaver::flush() {
+  write(waiting_);
+  waiting_.clear();
+}
+
+void ChunkSaver::write(const std::vector<Sample>& samples) {
+  if (samples.empty()) {
+    return;
+  }
+  const auto count = static_cast<Eigen::Index>(samples.size());
+  SampleBlock block;
+  block.parameters.resize(samples.front().parameters.size(), count);
+  block.responses.resize(samples.front().response.size(), count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    block.parameters.col(i) = samples[i].parameters;
+    block.responses.col(i) = samples[i].response;
+    block.statuses.push_back(samples[i].status);
+  }
+  store_.append(block);
+}
 
 void flushQuietly(ChunkSaver& saver) {
   try {

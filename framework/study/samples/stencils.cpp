@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "framework/base/log/interrupted.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
 #include "framework/data/sensitivity/stencil_simulator.hpp"

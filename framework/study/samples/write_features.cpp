@@ -3,12 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/hdf5/hdf5_file.hpp"
-#include "framework/base/log/interrupted.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

@@ -4,7 +4,6 @@
 
 #include <unordered_set>
 
-#include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/results/run_state.hpp"

@@ -14,7 +14,6 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/json/json.hpp"
 #include "framework/base/text/escape.hpp"
-#include "framework/study/sweep/sweep_folder.hpp"
 
 namespace twinmap {
 namespace {
@@ -195,8 +194,7 @@ void requireScheduler(SchedulerKind kind) {
   if (kind == SchedulerKind::kSlurm && runCommand("command -v sbatch").status != 0) {
     throw std::runtime_error(
         "sbatch was not found: --on slurm needs the commands of Slurm; --on template takes another "
-        "scheduler, --on "
-        "local prints the commands to run by any means");
+        "scheduler, --on local prints the commands to run by any means");
   }
 }
 

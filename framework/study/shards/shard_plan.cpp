@@ -11,7 +11,6 @@
 #include "framework/results/run_state.hpp"
 #include "framework/study/samples/model_store.hpp"
 #include "framework/study/sweep/run_sweep.hpp"
-#include "framework/study/sweep/sweep_folder.hpp"
 
 namespace twinmap {
 namespace {

@@ -9,7 +9,6 @@
 #include <fstream>
 
 #include "framework/data/features/feature_extractor.hpp"
-#include "framework/data/reduction/response_reduction.hpp"
 #include "framework/data/sensitivity/stencil_simulator.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
 #include "framework/estimation/network/train_network_map.hpp"

@@ -4,18 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <set>
 
 #include "framework/base/log/notice.hpp"
-#include "framework/data/features/feature_extractor.hpp"
 #include "framework/experiment/files/resolve_defaults.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/results/run_state.hpp"
 #include "framework/study/sweep/case_cost.hpp"
-#include "framework/study/sweep/probe.hpp"
 #include "framework/study/sweep/sweep_folder.hpp"
 
 namespace twinmap {
@@ -336,11 +333,10 @@ void requireFit(const ExperimentSurvey& survey, const SweepPlan& plan, const Pla
   const ExperimentSpec& first = survey.cases.front().experiment;
   const double free = findFreeDisk(survey.folder);
   if (plan.disk > free) {
-    throw ExperimentError(
-        {first.name.where.file, 0, 0, "design"}, "",
-        fmt::format("needs about {} of disk, of which {} are free at '{}'. Reduce the samples, or "
-                    "write to another disk (--out, --store)",
-                    describeBytes(plan.disk), describeBytes(free), survey.folder.string()));
+    throw ExperimentError({first.name.where.file, 0, 0, "design"}, "",
+                          fmt::format("needs about {} of disk, of which {} are free at '{}'. Reduce the "
+                                      "samples, or write to another disk (--out, --store)",
+                                      describeBytes(plan.disk), describeBytes(free), survey.folder.string()));
   }
 }
 

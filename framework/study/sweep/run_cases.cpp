@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "framework/base/files/atomic_file.hpp"
-#include "framework/base/log/interrupted.hpp"
+#include "framework/base/log/run_control.hpp"
 
 namespace twinmap {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/folder_lock.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <sstream>
-#include <stdexcept>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/csv.hpp"

@@ -1,7 +1,5 @@
 #include "kernels/gp/covariance/radial.hpp"
 
-#include <cmath>
-
 namespace twinmap::gp {
 namespace {
 

@@ -7,7 +7,6 @@
 #include "kernels/gp/cross_covariance.hpp"
 #include "kernels/gp/training_set.hpp"
 #include "kernels/linalg/flush_denormals.hpp"
-#include "kernels/linalg/triangular.hpp"
 
 namespace twinmap::gp {
 

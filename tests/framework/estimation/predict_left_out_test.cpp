@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/estimate.hpp"
 #include "framework/estimation/gp/train_gp_map.hpp"
-#include "framework/estimation/residual_correlation.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "framework/inference/inferrer.hpp"
 #include "framework/report/history/history.hpp"
 

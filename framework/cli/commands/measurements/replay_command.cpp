@@ -1,6 +1,9 @@
+#include <filesystem>
 #include <iostream>
 #include <stdexcept>
 
+#include "framework/base/files/atomic_file.hpp"
+#include "framework/base/text/csv.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
@@ -8,13 +11,28 @@
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
+#include "framework/study/replay/replay.hpp"
 #include "framework/study/replay/replay_files.hpp"
-#include "framework/study/replay/write_replay.hpp"
+#include "framework/study/replay/replay_page.hpp"
 
 namespace twinmap::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Writes replay.csv, residuals.csv, fit.csv, inference.json and report.html, each whole or not at all; makes
+/// the folder. Throws std::runtime_error naming what cannot be written.
+void writeReplay(const std::filesystem::path& folder, const MeasurementReader& reader, const Replay& replay) {
+  makeFolders(folder);
+  writeTextFile(folder / "replay.csv", makeReplayCsv(replay));
+  writeTextFile(folder / "residuals.csv", makeResidualsCsv(replay));
+  writeTextFile(folder / "fit.csv", makeCsv(listFits(replay)));
+  writeTextFile(folder / "inference.json",
+                makeInferenceJson(replay.inferred, reader.getExperiment().model.parameters,
+                                  reader.getExtractor().getInfos()) +
+                    "\n");
+  writeTextFile(folder / "report.html", makeReplayPage(reader, replay));
+}
 
 double findStart(const MeasurementReader& reader, const std::string& file, std::optional<double> start) {
   return start || !reader.getExperiment().measurement.start.when

@@ -72,17 +72,16 @@ void requireComparable(const std::vector<Source>& all) {
   const Source& first = all.front();
   for (const Source& one : all) {
     if (one.countFeatures() != first.countFeatures()) {
-      throw ExperimentError(fmt::format(
-          "{} has {} features, but {} has {}: structures are compared by the same features of the same "
-          "recordings; give them the same 'features'",
-          one.file, one.countFeatures(), first.file, first.countFeatures()));
+      throw ExperimentError(
+          fmt::format("{} has {} features, but {} has {}: structures are compared by the same features of "
+                      "the same recordings; give them the same 'features'",
+                      one.file, one.countFeatures(), first.file, first.countFeatures()));
     }
     requireSameSamples(one, first);
     if (listUnknownNoise(one.experiment.noise) != listUnknownNoise(first.experiment.noise)) {
       throw ExperimentError(
           fmt::format("{} and {} differ in the outputs whose noise is unknown: structures are compared by "
-                      "the same noise; "
-                      "give them the same 'noise.stddev'",
+                      "the same noise; give them the same 'noise.stddev'",
                       one.file, first.file));
     }
   }

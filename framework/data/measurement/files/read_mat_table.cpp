@@ -2,7 +2,6 @@
 
 #include <matio.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "framework/base/hdf5/hdf5_file.hpp"

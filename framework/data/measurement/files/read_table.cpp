@@ -5,14 +5,66 @@
 #include <fstream>
 #include <iterator>
 
-#include "framework/data/measurement/files/read_hdf5_table.hpp"
+#include "framework/base/hdf5/hdf5_file.hpp"
 #include "framework/data/measurement/files/read_mat_table.hpp"
+#include "framework/data/measurement/files/table_builder.hpp"
 
 namespace twinmap {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+/// How many numbers a vector has, also one that is written as a matrix of one row or column; none otherwise.
+std::optional<std::size_t> countVectorElements(const std::vector<std::size_t>& shape) {
+  const auto longer = std::count_if(shape.begin(), shape.end(), [](std::size_t n) { return n != 1; });
+  if (shape.empty() || longer > 1) {
+    return {};
+  }
+  return *std::max_element(shape.begin(), shape.end()) *
+         (longer == 0 || *std::min_element(shape.begin(), shape.end()) > 0);
+}
+
+std::optional<std::string> readUnit(const Hdf5Reader& file, const std::string& dataset) {
+  for (const char* name : {"unit", "units"}) {
+    if (file.hasAttribute(dataset, name)) {
+      return file.readAttribute(dataset, name);
+    }
+  }
+  return {};
+}
+
+void addDataset(const Hdf5Reader& file, const std::string& name, TableBuilder& table) {
+  const std::optional<std::size_t> count = countVectorElements(file.readShape(name));
+  if (!file.isRealNumber(name)) {
+    table.skip(name, "is not a dataset of real numbers");
+  } else if (!count) {
+    table.skip(name, "must have one dimension");
+  } else {
+    table.reserve(*count);
+    const Eigen::MatrixXd values = file.readSamples(name);
+    table.add({name, readUnit(file, name), values.reshaped()});
+  }
+}
+
+/// See readTable().
+Table readHdf5Table(const std::filesystem::path& path, const std::vector<std::string>& wanted,
+                    MissingCells missing) {
+  try {
+    const Hdf5Reader file(path);
+    TableBuilder table(path.string(), wanted, missing);
+    for (const std::string& name : file.listDatasets()) {
+      if (table.takes(name)) {
+        addDataset(file, name, table);
+      }
+    }
+    return table.finish();
+  } catch (const MeasurementError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    throw MeasurementError(error.what());
+  }
+}
 
 Table readCsvFile(const fs::path& path, const std::vector<std::string>& wanted, MissingCells missing) {
   std::ifstream file(path, std::ios::binary);
@@ -51,10 +103,9 @@ void refuseRecording(const fs::path& run) {
   const std::string extension = getExtension(run);
   if (fs::is_regular_file(run) &&
       std::find(std::begin(kExtensions), std::end(kExtensions), extension) != std::end(kExtensions)) {
-    throw MeasurementError(
-        run.string() +
-        ": is a recording; first give the folder of a finished run, its maps.h5, or an experiment "
-        "file (YAML), then recordings");
+    throw MeasurementError(run.string() +
+                           ": is a recording; first give the folder of a finished run, its maps.h5, or an "
+                           "experiment file (YAML), then recordings");
   }
 }
 

@@ -1,7 +1,6 @@
 #include "framework/data/measurement/files/table.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <iterator>
 

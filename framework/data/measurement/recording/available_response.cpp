@@ -148,8 +148,7 @@ std::string describeUseless(const VectorXd& times, const VectorXd& needed, const
   }
   return fmt::format(
       "has no sample at any needed time, {} to {}, but some from {} to {}{}; give the time in the file that "
-      "is "
-      "the model's 0 (--start), or the unit of its times, as 't [ms]'",
+      "is the model's 0 (--start), or the unit of its times, as 't [ms]'",
       describeTime(needed[0]), describeTime(needed[needed.size() - 1]), first, last, assumed);
 }
 
@@ -215,10 +214,10 @@ void addOutput(const Table& table, const std::string& column, const SampleFinder
   available.clipped.insert(available.clipped.end(), beyond.begin(), beyond.end());
   known = VectorXd(known(at));
   if (!beyond.empty()) {
-    available.remarks.push_back(fmt::format(
-        "{} of {} samples of {} are at a limit of its range: what they say is that the response is "
-        "there or beyond",
-        beyond.size(), needed.size(), column));
+    available.remarks.push_back(
+        fmt::format("{} of {} samples of {} are at a limit of its range: what they say is that the response "
+                    "is there or beyond",
+                    beyond.size(), needed.size(), column));
   }
   if (known.hasNaN()) {
     available.remarks.push_back(describeMissing(column, needed, known) + finder.describeSparse());

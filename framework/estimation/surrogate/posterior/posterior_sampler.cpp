@@ -17,6 +17,8 @@ using importance::WeightedDraws;
 
 namespace {
 
+constexpr int kDrawChannel = 0, kCenterChannel = 1;  // of random numbers; a round each after the first
+
 VectorXd clampToBox(const VectorXd& point) {
   return point.cwiseMax(-1.0).cwiseMin(1.0);
 }
@@ -60,7 +62,7 @@ SurrogatePosterior PosteriorSampler::sample(const Eigen::Ref<const VectorXd>& sc
 }
 
 const importance::RoundNumbers& PosteriorSampler::getNumbers(int round, std::uint64_t sample) {
-  constexpr int kCenters = 24, kCenterChannel = 1;
+  constexpr int kCenters = 24;
   if (sample != numbers_sample_) {
     numbers_.clear();
     numbers_sample_ = sample;
@@ -104,8 +106,7 @@ VectorXd PosteriorSampler::calcLogs(const MatrixXd& points) {
 
 /// Most draws are as far from the modes as they are said to be, few twice as far, and few anywhere.
 BoxMixture PosteriorSampler::proposeFirst() const {
-  constexpr double kNear = 0.75, kFar = 0.2;
-  constexpr double kFarWidth = 2.0;
+  constexpr double kNear = 0.75, kFar = 0.2, kFarWidth = 2.0;
   std::vector<importance::NormalPart> parts;
   for (std::size_t k = 0; k < mode_factors_.size(); ++k) {
     const ScoreMode& mode = inversion_.getModes()[k];
@@ -150,7 +151,6 @@ MatrixXd PosteriorSampler::stretchAll(const MatrixXd& points) const {
 
 SurrogatePosterior PosteriorSampler::summarize(const importance::AdaptiveDraws& drawn,
                                                const gp::Moments& normal, std::uint64_t sample) const {
-  constexpr int kDrawChannel = 0;
   const Index p = model_.parameters, u = model_.prior.count();
   const WeightedDraws& draws = drawn.draws;
   SurrogatePosterior posterior;

@@ -69,50 +69,19 @@ extern "C" {
 #define fmi2GetBooleanStatus fmi2FullName(fmi2GetBooleanStatus)
 #define fmi2GetStringStatus fmi2FullName(fmi2GetStringStatus)
 
-FMI2_Export fmi2GetTypesPlatformTYPE fmi2GetTypesPlatform;
-FMI2_Export fmi2GetVersionTYPE fmi2GetVersion;
-FMI2_Export fmi2SetDebugLoggingTYPE fmi2SetDebugLogging;
-FMI2_Export fmi2InstantiateTYPE fmi2Instantiate;
-FMI2_Export fmi2FreeInstanceTYPE fmi2FreeInstance;
-FMI2_Export fmi2SetupExperimentTYPE fmi2SetupExperiment;
-FMI2_Export fmi2EnterInitializationModeTYPE fmi2EnterInitializationMode;
-FMI2_Export fmi2ExitInitializationModeTYPE fmi2ExitInitializationMode;
-FMI2_Export fmi2TerminateTYPE fmi2Terminate;
-FMI2_Export fmi2ResetTYPE fmi2Reset;
-FMI2_Export fmi2GetRealTYPE fmi2GetReal;
-FMI2_Export fmi2GetIntegerTYPE fmi2GetInteger;
-FMI2_Export fmi2GetBooleanTYPE fmi2GetBoolean;
-FMI2_Export fmi2GetStringTYPE fmi2GetString;
-FMI2_Export fmi2SetRealTYPE fmi2SetReal;
-FMI2_Export fmi2SetIntegerTYPE fmi2SetInteger;
-FMI2_Export fmi2SetBooleanTYPE fmi2SetBoolean;
-FMI2_Export fmi2SetStringTYPE fmi2SetString;
-FMI2_Export fmi2GetFMUstateTYPE fmi2GetFMUstate;
-FMI2_Export fmi2SetFMUstateTYPE fmi2SetFMUstate;
-FMI2_Export fmi2FreeFMUstateTYPE fmi2FreeFMUstate;
-FMI2_Export fmi2SerializedFMUstateSizeTYPE fmi2SerializedFMUstateSize;
-FMI2_Export fmi2SerializeFMUstateTYPE fmi2SerializeFMUstate;
-FMI2_Export fmi2DeSerializeFMUstateTYPE fmi2DeSerializeFMUstate;
-FMI2_Export fmi2GetDirectionalDerivativeTYPE fmi2GetDirectionalDerivative;
-FMI2_Export fmi2EnterEventModeTYPE fmi2EnterEventMode;
-FMI2_Export fmi2NewDiscreteStatesTYPE fmi2NewDiscreteStates;
-FMI2_Export fmi2EnterContinuousTimeModeTYPE fmi2EnterContinuousTimeMode;
-FMI2_Export fmi2CompletedIntegratorStepTYPE fmi2CompletedIntegratorStep;
-FMI2_Export fmi2SetTimeTYPE fmi2SetTime;
-FMI2_Export fmi2SetContinuousStatesTYPE fmi2SetContinuousStates;
-FMI2_Export fmi2GetDerivativesTYPE fmi2GetDerivatives;
-FMI2_Export fmi2GetEventIndicatorsTYPE fmi2GetEventIndicators;
-FMI2_Export fmi2GetContinuousStatesTYPE fmi2GetContinuousStates;
-FMI2_Export fmi2GetNominalsOfContinuousStatesTYPE fmi2GetNominalsOfContinuousStates;
-FMI2_Export fmi2SetRealInputDerivativesTYPE fmi2SetRealInputDerivatives;
-FMI2_Export fmi2GetRealOutputDerivativesTYPE fmi2GetRealOutputDerivatives;
-FMI2_Export fmi2DoStepTYPE fmi2DoStep;
-FMI2_Export fmi2CancelStepTYPE fmi2CancelStep;
-FMI2_Export fmi2GetStatusTYPE fmi2GetStatus;
-FMI2_Export fmi2GetRealStatusTYPE fmi2GetRealStatus;
-FMI2_Export fmi2GetIntegerStatusTYPE fmi2GetIntegerStatus;
-FMI2_Export fmi2GetBooleanStatusTYPE fmi2GetBooleanStatus;
-FMI2_Export fmi2GetStringStatusTYPE fmi2GetStringStatus;
+#define fmi2Declare(name) FMI2_Export fmi2##name##TYPE fmi2##name;
+fmi2Declare(GetTypesPlatform) fmi2Declare(GetVersion) fmi2Declare(SetDebugLogging) fmi2Declare(Instantiate)
+fmi2Declare(FreeInstance) fmi2Declare(SetupExperiment) fmi2Declare(EnterInitializationMode)
+fmi2Declare(ExitInitializationMode) fmi2Declare(Terminate) fmi2Declare(Reset) fmi2Declare(GetReal)
+fmi2Declare(GetInteger) fmi2Declare(GetBoolean) fmi2Declare(GetString) fmi2Declare(SetReal) fmi2Declare(SetInteger)
+fmi2Declare(SetBoolean) fmi2Declare(SetString) fmi2Declare(GetFMUstate) fmi2Declare(SetFMUstate)
+fmi2Declare(FreeFMUstate) fmi2Declare(SerializedFMUstateSize) fmi2Declare(SerializeFMUstate)
+fmi2Declare(DeSerializeFMUstate) fmi2Declare(GetDirectionalDerivative) fmi2Declare(EnterEventMode)
+fmi2Declare(NewDiscreteStates) fmi2Declare(EnterContinuousTimeMode) fmi2Declare(CompletedIntegratorStep)
+fmi2Declare(SetTime) fmi2Declare(SetContinuousStates) fmi2Declare(GetDerivatives) fmi2Declare(GetEventIndicators)
+fmi2Declare(GetContinuousStates) fmi2Declare(GetNominalsOfContinuousStates) fmi2Declare(SetRealInputDerivatives)
+fmi2Declare(GetRealOutputDerivatives) fmi2Declare(DoStep) fmi2Declare(CancelStep) fmi2Declare(GetStatus)
+fmi2Declare(GetRealStatus) fmi2Declare(GetIntegerStatus) fmi2Declare(GetBooleanStatus) fmi2Declare(GetStringStatus)
 
 #ifdef __cplusplus
 }

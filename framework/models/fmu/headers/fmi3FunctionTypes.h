@@ -52,57 +52,17 @@ typedef fmi3Status fmi3EnterConfigurationModeTYPE(fmi3Instance);
 typedef fmi3Status fmi3ExitConfigurationModeTYPE(fmi3Instance);
 
 /* values */
-typedef fmi3Status fmi3GetFloat32TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Float32 values[],
-                                      size_t valueCount);
-typedef fmi3Status fmi3GetFloat64TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Float64 values[],
-                                      size_t valueCount);
-typedef fmi3Status fmi3GetInt8TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Int8 values[],
-                                   size_t valueCount);
-typedef fmi3Status fmi3GetUInt8TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3UInt8 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3GetInt16TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Int16 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3GetUInt16TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3UInt16 values[],
-                                     size_t valueCount);
-typedef fmi3Status fmi3GetInt32TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Int32 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3GetUInt32TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3UInt32 values[],
-                                     size_t valueCount);
-typedef fmi3Status fmi3GetInt64TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Int64 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3GetUInt64TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3UInt64 values[],
-                                     size_t valueCount);
-typedef fmi3Status fmi3GetBooleanTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Boolean values[],
-                                      size_t valueCount);
-typedef fmi3Status fmi3GetStringTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3String values[],
-                                     size_t valueCount);
+#define fmi3AccessTypes(type)                                                                                   \
+  typedef fmi3Status fmi3Get##type##TYPE(fmi3Instance, const fmi3ValueReference[], size_t count,                  \
+                                         fmi3##type values[], size_t valueCount);                                 \
+  typedef fmi3Status fmi3Set##type##TYPE(fmi3Instance, const fmi3ValueReference[], size_t count,                  \
+                                         const fmi3##type values[], size_t valueCount);
+fmi3AccessTypes(Float32) fmi3AccessTypes(Float64) fmi3AccessTypes(Int8) fmi3AccessTypes(UInt8) fmi3AccessTypes(Int16)
+fmi3AccessTypes(UInt16) fmi3AccessTypes(Int32) fmi3AccessTypes(UInt32) fmi3AccessTypes(Int64) fmi3AccessTypes(UInt64)
+fmi3AccessTypes(Boolean) fmi3AccessTypes(String)
 typedef fmi3Status fmi3GetBinaryTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, size_t valueSizes[],
                                      fmi3Binary values[], size_t valueCount);
 typedef fmi3Status fmi3GetClockTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, fmi3Clock values[]);
-typedef fmi3Status fmi3SetFloat32TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Float32 values[],
-                                      size_t valueCount);
-typedef fmi3Status fmi3SetFloat64TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Float64 values[],
-                                      size_t valueCount);
-typedef fmi3Status fmi3SetInt8TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Int8 values[],
-                                   size_t valueCount);
-typedef fmi3Status fmi3SetUInt8TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3UInt8 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3SetInt16TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Int16 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3SetUInt16TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3UInt16 values[],
-                                     size_t valueCount);
-typedef fmi3Status fmi3SetInt32TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Int32 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3SetUInt32TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3UInt32 values[],
-                                     size_t valueCount);
-typedef fmi3Status fmi3SetInt64TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Int64 values[],
-                                    size_t valueCount);
-typedef fmi3Status fmi3SetUInt64TYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3UInt64 values[],
-                                     size_t valueCount);
-typedef fmi3Status fmi3SetBooleanTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Boolean values[],
-                                      size_t valueCount);
-typedef fmi3Status fmi3SetStringTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3String values[],
-                                     size_t valueCount);
 typedef fmi3Status fmi3SetBinaryTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const size_t valueSizes[],
                                      const fmi3Binary values[], size_t valueCount);
 typedef fmi3Status fmi3SetClockTYPE(fmi3Instance, const fmi3ValueReference[], size_t count, const fmi3Clock values[]);

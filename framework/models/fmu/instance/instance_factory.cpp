@@ -1,8 +1,7 @@
 #include <cstring>
 
 #include "framework/base/text/source_location.hpp"
-#include "framework/models/fmu/instance/instance_2.hpp"
-#include "framework/models/fmu/instance/instance_3.hpp"
+#include "framework/models/fmu/instance/common_instance.hpp"
 
 namespace twinmap::fmi {
 namespace {
@@ -23,14 +22,14 @@ class InstanceFactory::Impl {
       : source_(source),
         library_(source.library, source.description.getCapabilities(source.kind).model_identifier + "_") {
     if (source.description.version == Version::k2) {
-      checkVersion(functions_2_.emplace(library_, source.kind).getVersion(), '2');
+      checkVersion(functions_2_.emplace(library_, source.kind).GetVersion(), '2');
     } else {
-      checkVersion(functions_3_.emplace(library_, source.kind).getVersion(), '3');
+      checkVersion(functions_3_.emplace(library_, source.kind).GetVersion(), '3');
     }
   }
 
   std::unique_ptr<Instance> make() {
-    return functions_2_ ? makeInstance2(*functions_2_, source_) : makeInstance3(*functions_3_, source_);
+    return functions_2_ ? makeInstance(*functions_2_, source_) : makeInstance(*functions_3_, source_);
   }
 
  private:

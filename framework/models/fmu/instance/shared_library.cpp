@@ -17,14 +17,13 @@ SharedLibrary::SharedLibrary(const std::filesystem::path& path, std::string pref
   }
 }
 
-void* SharedLibrary::findSymbol(const char* name) const {
-  void* symbol = dlsym(handle_, name);
-  return symbol != nullptr ? symbol : dlsym(handle_, (prefix_ + name).c_str());
-}
-
-void* SharedLibrary::requireSymbol(const char* name) const {
-  void* symbol = findSymbol(name);
-  if (symbol == nullptr) {
+void* SharedLibrary::find(const std::string& name, Need need) const {
+  if (need == Need::kNone) {
+    return nullptr;
+  }
+  void* symbol = dlsym(handle_, name.c_str());
+  symbol = symbol != nullptr ? symbol : dlsym(handle_, (prefix_ + name).c_str());
+  if (symbol == nullptr && need == Need::kRequired) {
     throw ExperimentError("the FMU's library " + file_name_ + " has no function " + name);
   }
   return symbol;

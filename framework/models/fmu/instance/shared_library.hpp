@@ -5,6 +5,9 @@
 
 namespace twinmap::fmi {
 
+/// Whether an FMU of some kind must have a function.
+enum class Need { kNone, kOptional, kRequired };
+
 /// The library of an FMU, loaded into this process. It stays loaded to the end of the process: what its
 /// threads and exit handlers do after an unloading is undefined.
 class SharedLibrary {
@@ -13,21 +16,15 @@ class SharedLibrary {
   /// ExperimentError with the loader's words if the library or what it needs cannot be loaded.
   SharedLibrary(const std::filesystem::path& path, std::string prefix);
 
-  /// Null if there is none.
+  /// Null if there is none or none is needed. Throws ExperimentError that names a required function if there
+  /// is none.
   template <class Function>
-  Function* find(const char* name) const {
-    return reinterpret_cast<Function*>(findSymbol(name));
-  }
-
-  /// Throws ExperimentError that names the function if there is none.
-  template <class Function>
-  Function* require(const char* name) const {
-    return reinterpret_cast<Function*>(requireSymbol(name));
+  void load(Function*& function, const char* prefix, const char* name, Need need) const {
+    function = reinterpret_cast<Function*>(find(std::string(prefix) + name, need));
   }
 
  private:
-  void* findSymbol(const char* name) const;
-  void* requireSymbol(const char* name) const;
+  void* find(const std::string& name, Need need) const;
 
   std::string file_name_, prefix_;
   void* handle_;

@@ -133,17 +133,4 @@ ValueGroup::ValueGroup(const std::vector<ValueSlot>& slots) : count_(slots.size(
   }
 }
 
-double roundToType(Type type, double value) {
-  switch (type) {
-    case Type::kFloat64:
-      return value;
-    case Type::kFloat32:
-      return static_cast<float>(value);
-    case Type::kBoolean:
-      return value >= 0.5 ? 1.0 : 0.0;
-    default:
-      return std::round(value);
-  }
-}
-
 }  // namespace twinmap::fmi

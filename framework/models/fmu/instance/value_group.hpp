@@ -45,7 +45,4 @@ class ValueGroup {
   std::size_t count_ = 0;
 };
 
-/// The nearest value of the type; of Boolean, true from one half on.
-double roundToType(Type type, double value);
-
 }  // namespace twinmap::fmi

@@ -1,4 +1,3 @@
-#include <charconv>
 #include <map>
 
 #include "framework/models/fmu/package/read_variables.hpp"

@@ -59,10 +59,6 @@ std::optional<UnitConversion> findByName(const std::string& fmu_unit, const std:
 
 }  // namespace
 
-bool isKnownUnit(const ModelDescription& description, const std::string& unit) {
-  return unit.empty() || findUnit(description, unit).has_value() || findByName(unit, unit).has_value();
-}
-
 VariableUnits calcVariableUnits(const ModelDescription& description, const Variable& variable,
                                 const std::string& unit, const SourceLocation& where) {
   if (variable.unit.empty() || variable.unit == unit) {

@@ -20,7 +20,4 @@ struct VariableUnits {
 VariableUnits calcVariableUnits(const ModelDescription& description, const Variable& variable,
                                 const std::string& unit, const SourceLocation& where);
 
-/// A unit's human-readable name: "N/m (unknown)" is "N/m".
-bool isKnownUnit(const ModelDescription& description, const std::string& unit);
-
 }  // namespace twinmap::fmi

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 
 #include "framework/base/text/source_location.hpp"
 

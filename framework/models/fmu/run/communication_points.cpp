@@ -41,8 +41,7 @@ CommunicationGrid calcFixedGrid(const std::vector<double>& targets, double large
   if (divisor < kSmallestShare * last) {
     throw FmuFailure(
         "the FMU takes communication steps of one size only, and no step meets all sample times and edges of "
-        "the "
-        "excitation; make them multiples of one step");
+        "the excitation; make them multiples of one step");
   }
   CommunicationGrid grid;
   grid.step = divisor / static_cast<double>(countPieces(divisor, largest));

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "framework/base/log/interrupted.hpp"
 #include "framework/base/log/log.hpp"
 #include "framework/base/log/notice.hpp"
+#include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
 #include "framework/study/samples/simulate_missing.hpp"

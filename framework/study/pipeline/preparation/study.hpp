@@ -9,7 +9,7 @@
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/data/reduction/response_reduction.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
-#include "framework/estimation/training_control.hpp"
+#include "framework/estimation/run_tasks.hpp"
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/simulation/simulator.hpp"
 #include "framework/study/samples/sample_source.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "framework/base/log/interrupted.hpp"
-#include "framework/estimation/training_control.hpp"
+#include "framework/base/log/run_control.hpp"
+#include "framework/estimation/run_tasks.hpp"
 
 namespace twinmap {
 

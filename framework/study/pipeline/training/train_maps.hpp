@@ -1,12 +1,31 @@
 #pragma once
 
+#include "framework/base/log/stage_notes.hpp"
+#include "framework/data/features/labelled_features.hpp"
+#include "framework/estimation/gp/train_gp_map.hpp"
+#include "framework/results/run_summary.hpp"
 #include "framework/study/pipeline/preparation/prepare_data.hpp"
-#include "framework/study/pipeline/training/train_map.hpp"
+#include "framework/study/pipeline/preparation/study.hpp"
 #include "framework/study/pipeline/training/train_network.hpp"
 #include "framework/study/pipeline/training/train_surrogate_map.hpp"
 #include "framework/study/pipeline/training/trained_map.hpp"
 
 namespace twinmap {
+
+/// A trained inverse map and how that went.
+struct Training {
+  GpMap map;
+  TrainingSummary summary;
+  StageNotes notes;
+};
+
+/// A map trained on samples and what its training reports tell.
+Training makeTraining(const ExperimentSpec& experiment, const LabelledFeatures& samples,
+                      GpMapTraining trained);
+
+/// Trains the inverse map of an experiment on its training samples (trainGpMap). Throws Interrupted if it is
+/// stopped, after one evaluation of the likelihood at most.
+Training trainMap(const Study& study, const LabelledFeatures& samples);
 
 /// A map of processes, prepared for measurements.
 TrainedMap makeTrainedMap(const Study& study, const PreparedData& data, Training training);

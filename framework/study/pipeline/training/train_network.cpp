@@ -11,7 +11,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/noise/noise.hpp"
-#include "framework/estimation/calibration_factor.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/estimation/network/train_network_map.hpp"
 #include "framework/estimation/surrogate/train_surrogate.hpp"
 #include "framework/experiment/network_size.hpp"

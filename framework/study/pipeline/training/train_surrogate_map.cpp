@@ -5,7 +5,7 @@
 
 #include "framework/base/log/stage_timer.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
-#include "framework/estimation/calibration_factor.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/surrogate/train_surrogate.hpp"
 #include "framework/experiment/model/parameter_box.hpp"

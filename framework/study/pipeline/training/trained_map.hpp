@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "framework/data/reduction/feature_transform.hpp"
 #include "framework/estimation/estimate.hpp"

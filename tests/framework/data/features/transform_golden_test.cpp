@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/data/reduction/affine_step.hpp"
 #include "framework/data/reduction/feature_transform.hpp"
 #include "framework/data/reduction/mutual_information.hpp"
 #include "framework/data/reduction/partial_least_squares.hpp"
-#include "framework/data/reduction/scaling_steps.hpp"
 #include "framework/data/reduction/selections.hpp"
 
 namespace twinmap {

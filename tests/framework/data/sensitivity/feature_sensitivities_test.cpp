@@ -69,14 +69,14 @@ TEST_F(TwoBeamSensitivities, AreThoseOfTheClosedFormEquations) {
 }
 
 TEST_F(TwoBeamSensitivities, DoNotLeaveTheBounds) {
-  VectorXd corner(4);
+  MatrixXd corner(4, 1);
   for (Eigen::Index j = 0; j < 4; ++j) {
-    corner[j] = j % 2 == 0 ? model_.parameters[j].bounds.lower : model_.parameters[j].bounds.upper;
+    corner(j, 0) = j % 2 == 0 ? model_.parameters[j].bounds.lower : model_.parameters[j].bounds.upper;
   }
-  const LocalModel local = calcLocalModel(simulator_, extractor_, model_.parameters, corner);
-  EXPECT_LT(
-      calcLargestColumnError(local.sensitivities, calcClosedFormSensitivities(corner, calcWidths(model_))),
-      1e-4);
+  const LocalModel local = calcLocalModels(simulator_, extractor_, model_.parameters, corner, 1).front();
+  EXPECT_LT(calcLargestColumnError(local.sensitivities,
+                                   calcClosedFormSensitivities(corner.col(0), calcWidths(model_))),
+            1e-4);
 }
 
 TEST_F(TwoBeamSensitivities, AreTheSameForAnyNumberOfThreads) {

@@ -1,9 +1,9 @@
-#include "framework/estimation/calibration_factor.hpp"
-
 #include <gtest/gtest.h>
 
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+
+#include "framework/estimation/interval_factor.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,6 +1,6 @@
-#include "framework/estimation/trained/coverage_record.hpp"
-
 #include <gtest/gtest.h>
+
+#include "framework/estimation/trained/test_records.hpp"
 
 namespace twinmap {
 namespace {

@@ -1,12 +1,27 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "framework/experiment/model/model_spec.hpp"
 #include "framework/experiment/yaml/compare_trees.hpp"
-#include "framework/results/comparison/compared_run.hpp"
+#include "framework/experiment/yaml/yaml_node.hpp"
+#include "framework/store/predictions_file.hpp"
 
 namespace twinmap {
+
+/// What two runs are compared by.
+struct ComparedRun {
+  std::string folder;
+  YamlNode resolved;  ///< resolved.yaml
+  std::vector<ParameterSpec> parameters;
+  StoredPredictions test;
+};
+
+/// Reads a run's folder. Throws ExperimentError naming the folder if it is not that of a finished run, or
+/// that of a sweep.
+ComparedRun readComparedRun(const std::filesystem::path& folder);
 
 /// A figure of metrics.csv in both runs, with the 95 % interval of the difference b - a (coverages have
 /// none).
@@ -38,5 +53,15 @@ struct RunComparison {
 /// independent sets (paired_bootstrap.hpp); 10000 resamples, fixed seed. A coverage counts samples and has no
 /// interval: the few samples in which two runs disagree are too few for a bootstrap.
 RunComparison compareRuns(const ComparedRun& a, const ComparedRun& b);
+
+/// For people: a table of the figures, what differs in the experiments, and what the intervals are.
+std::string makeComparisonText(const RunComparison& comparison);
+
+/// Columns parameter, unit, figure, a, b, difference, lower, upper, paired (1 or 0); empty where not
+/// known.
+std::string makeComparisonCsv(const RunComparison& comparison);
+
+/// All of it; numbers that are not known are null.
+std::string makeComparisonJson(const RunComparison& comparison);
 
 }  // namespace twinmap
