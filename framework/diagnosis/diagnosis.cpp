@@ -12,7 +12,6 @@
 #include "framework/diagnosis/term_search.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
-#include "framework/inference/joint/join_trials.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {

@@ -58,6 +58,14 @@ SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment,
   return options;
 }
 
+SimulatorPosteriorOptions searchNearby(SimulatorPosteriorOptions options) {
+  constexpr int kOwnStarts = 8;
+  options.search.scouts = kOwnStarts;
+  options.search.starts = 2 * kOwnStarts;
+  options.search.max_batches = 1;
+  return options;
+}
+
 SampledMeasurement SimulatorSampler::sampleUnder(const NoiseHypothesis& noise, const VectorXd& features,
                                                  const VectorXd& known, const MatrixXd& given,
                                                  const SimulatorPosteriorOptions& options) const {
@@ -94,6 +102,7 @@ SampledMeasurement SimulatorSampler::samplePosterior(const VectorXd& features, c
   }
   std::vector<NoiseHypothesis> others = listNoise(stated, features, known, fit.best);
   if (fit.chi_square > kGrossMisfit * fit.degrees) {  // no noise is so large, but a few samples may be off
+    sparing = searchNearby(sparing);
     others.erase(std::remove_if(others.begin(), others.end(),
                                 [](const NoiseHypothesis& noise) {
                                   return noise.has_outliers && !noise.outputs.empty();

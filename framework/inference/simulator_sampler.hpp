@@ -15,6 +15,9 @@ namespace twinmap {
 /// kMinPosteriorDraws.
 SimulatorPosteriorOptions makePosteriorOptions(const ExperimentSpec& experiment, int draws);
 
+/// Options of a search that begins where others ended: so few starts of its own suffice.
+SimulatorPosteriorOptions searchNearby(SimulatorPosteriorOptions options);
+
 /// A measurement about a point: whitened residual (k) and minus its derivatives (k x u, in half-widths of the
 /// bounds).
 struct LinearizedMeasurement {

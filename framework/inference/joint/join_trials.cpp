@@ -23,12 +23,4 @@ PosteriorProblem joinTrials(std::vector<MeasuredTrial> trials, const ModelSpec& 
   return problem;
 }
 
-SimulatorPosteriorOptions searchNearby(SimulatorPosteriorOptions options) {
-  constexpr int kOwnStarts = 8;
-  options.search.scouts = kOwnStarts;
-  options.search.starts = 2 * kOwnStarts;
-  options.search.max_batches = 1;
-  return options;
-}
-
 }  // namespace twinmap

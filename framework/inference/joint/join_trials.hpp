@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/estimation/posterior/simulator_posterior.hpp"
+#include "framework/estimation/posterior/posterior_problem.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
@@ -14,8 +14,5 @@ namespace twinmap {
 /// all, those of single trials are integrated out.
 PosteriorProblem joinTrials(std::vector<MeasuredTrial> trials, const ModelSpec& model,
                             const std::function<std::string(std::size_t, const std::string&)>& name);
-
-/// Options of a search that begins where others ended: so few starts of its own suffice.
-SimulatorPosteriorOptions searchNearby(SimulatorPosteriorOptions options);
 
 }  // namespace twinmap
