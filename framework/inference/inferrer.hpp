@@ -28,6 +28,9 @@ struct MissingTerm {
   std::vector<std::string> rivals{};  ///< terms that the measurement does not tell from it
   bool explains = false;              ///< whether what remains with it is noise as it is stated
   double share_of_all = 0.0;          ///< of the whole misfit that it takes away
+
+  /// Whether it says of time what a clock's fault does.
+  bool isOfTime() const { return term.rfind("delay.", 0) == 0 || term.rfind("clock.", 0) == 0; }
 };
 
 /// The term that may move a parameter most without being noticed.

@@ -117,14 +117,16 @@ Statuses listOfOthers(const InferredMeasurement& inferred) {
 }
 
 /// A term goes before noise that explains a measurement as well. What the noise was taken for is then left
-/// out, if stated noise remains with the term.
+/// out, if stated noise remains with the term. So it goes before a clock's fault, which is said beside.
 void addMissing(const InferredMeasurement& inferred, Statuses& statuses) {
   const MissingTerm* missing = inferred.findMissing();
-  const bool is_said = missing != nullptr && inferred.clock_faults.empty() && !isMismatch(statuses);
+  const bool has_clock = !inferred.clock_faults.empty();
+  const bool is_said = missing != nullptr && !isMismatch(statuses) &&
+                       (!has_clock || (missing->explains && !missing->isOfTime()));
   if (!is_said) {
     return;
   }
-  if (missing->explains) {
+  if (missing->explains && !has_clock) {
     dropExcuses(statuses);
   }
   statuses.insert(statuses.begin(), "missing_term");

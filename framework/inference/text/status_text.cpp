@@ -256,10 +256,7 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
 /// With the term of the model that would explain the recording as well.
 std::string explainClock(const InferredMeasurement& inferred) {
   const MissingTerm* term = inferred.findMissing();
-  const auto is_clock = [](const std::string& name) {  // of the candidates
-    return name.rfind("delay.", 0) == 0 || name.rfind("clock.", 0) == 0;
-  };
-  const bool other = term != nullptr && term->share > kMostOfMisfit && !is_clock(term->term);
+  const bool other = term != nullptr && term->share > kMostOfMisfit && !term->isOfTime();
   return explainNotice(
       Notice::kClockFault,
       fmt::format("{}{}", fmt::join(describe(inferred.clock_faults), "; "),
