@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -25,9 +26,8 @@ constexpr double kTimes = 10.0;  // the p-value of the excess itself, which few 
 
 /// Regular where it determines less than all.
 MatrixXd regularize(MatrixXd information) {
-  constexpr double kShare = 1e-10;  // of the largest: far below what bounds say
   information.diagonal().array() +=
-      kShare * information.diagonal().maxCoeff() + std::numeric_limits<double>::min();
+      kRegular * information.diagonal().maxCoeff() + std::numeric_limits<double>::min();
   return information;
 }
 

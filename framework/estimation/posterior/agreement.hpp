@@ -15,9 +15,6 @@ struct Agreement {
   bool isAtFloor() const;
 };
 
-/// Measurements that agree are called contradictory once in this share.
-constexpr double kAgreementLevel = 0.01;
-
 /// What one measurement says about the unknown parameters near the joint estimate, in LogCoordinates.
 struct PartInformation {
   std::vector<Eigen::Index> unknown;  ///< which of all

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/complement.hpp>
 #include <cmath>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -13,8 +14,6 @@ namespace twinmap {
 using Eigen::Index;
 
 namespace {
-
-constexpr double kLevel = 0.01;  // that of the test for a mismatch
 
 /// Coordinates at a bound that lead further out.
 std::vector<Index> findHeld(const LocalSurface& minimum) {
@@ -30,7 +29,7 @@ std::vector<Index> findHeld(const LocalSurface& minimum) {
 
 bool isNoise(double gain, std::size_t freedoms) {
   const boost::math::chi_squared distribution(static_cast<double>(freedoms));
-  return boost::math::cdf(boost::math::complement(distribution, gain)) > kLevel;
+  return boost::math::cdf(boost::math::complement(distribution, gain)) > kMismatchLevel;
 }
 
 /// Those of the held coordinates that alone gain more than the noisiest of them would: seen so little within
@@ -40,7 +39,7 @@ std::vector<Index> findPushed(const LocalSurface& minimum, const std::vector<Ind
   for (const Index j : held) {
     const double information = minimum.information(j, j), descent = minimum.descent[j];
     const double p = information > 0.0 ? std::erfc(std::abs(descent) / std::sqrt(2.0 * information)) : 1.0;
-    if (p * static_cast<double>(held.size()) < kLevel) {
+    if (p * static_cast<double>(held.size()) < kMismatchLevel) {
       pushed.push_back(j);
     }
   }

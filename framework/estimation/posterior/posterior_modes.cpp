@@ -61,26 +61,22 @@ bool areApart(const importance::WeightedDraws& a, const importance::WeightedDraw
 
 /// The nearest basin of each draw, with those taken together that are one mode.
 std::vector<std::size_t> groupDraws(const MatrixXd& points, const VectorXd& weights,
-                                    const std::vector<Basin>& basins, const Valleys& valleys) {
+                                    const std::vector<Basin>& basins,
+                                    const std::vector<std::pair<std::size_t, std::size_t>>& connected) {
   std::vector<std::size_t> group_of_draw = assign(points, basins);
-  const auto unite = [&](std::size_t kept, std::size_t other) {
-    std::replace(group_of_draw.begin(), group_of_draw.end(), other, kept);
-  };
   std::vector<std::size_t> group_of_basin(basins.size());
   std::iota(group_of_basin.begin(), group_of_basin.end(), std::size_t{0});
-  for (const auto& [from, to] : valleys.connected) {
+  for (const auto& [from, to] : connected) {
     const std::size_t kept = group_of_basin[from], other = group_of_basin[to];
     std::replace(group_of_basin.begin(), group_of_basin.end(), other, kept);
-    if (kept != other) {
-      unite(kept, other);
-    }
+    std::replace(group_of_draw.begin(), group_of_draw.end(), other, kept);
   }
   for (std::size_t a = 0; a < basins.size(); ++a) {
     for (std::size_t b = a + 1; b < basins.size(); ++b) {
       const importance::WeightedDraws first = takePart(points, weights, group_of_draw, a),
                                       second = takePart(points, weights, group_of_draw, b);
       if (first.weights.sum() > 0.0 && second.weights.sum() > 0.0 && !areApart(first, second)) {
-        unite(a, b);
+        std::replace(group_of_draw.begin(), group_of_draw.end(), b, a);
         b = a;  // the group has grown: it may touch others now
       }
     }
@@ -92,12 +88,11 @@ std::vector<std::size_t> groupDraws(const MatrixXd& points, const VectorXd& weig
 std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
                                         const std::vector<std::size_t>& group_of_draw, const MatrixXd& draws,
                                         const VectorXd& weights) {
-  constexpr double kMinWeight = 1e-3;  // 1000 to 1 is certain
   std::vector<PosteriorMode> modes;
   for (std::size_t k = 0; k < basins.size(); ++k) {
     importance::WeightedDraws part = takePart(draws, weights, group_of_draw, k);
     const double weight = part.weights.sum();
-    if (weight >= kMinWeight) {
+    if (weight >= kRareLevel) {
       part.weights /= weight;
       const MatrixXd covariance = importance::calcCovariance(part);
       modes.push_back({weight, importance::calcMean(part), covariance.diagonal().cwiseSqrt(),
@@ -112,8 +107,9 @@ std::vector<PosteriorMode> collectModes(const std::vector<Basin>& basins,
 }  // namespace
 
 std::vector<PosteriorMode> findModes(const MatrixXd& points, const MatrixXd& draws, const VectorXd& weights,
-                                     const std::vector<Basin>& basins, const Valleys& valleys) {
-  return collectModes(basins, groupDraws(points, weights, basins, valleys), draws, weights);
+                                     const std::vector<Basin>& basins,
+                                     const std::vector<std::pair<std::size_t, std::size_t>>& connected) {
+  return collectModes(basins, groupDraws(points, weights, basins, connected), draws, weights);
 }
 
 }  // namespace twinmap

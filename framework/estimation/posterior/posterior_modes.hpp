@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "framework/estimation/posterior/basins/basin_search.hpp"
-#include "framework/estimation/posterior/basins/valley.hpp"
 
 namespace twinmap {
 
@@ -19,10 +19,10 @@ struct PosteriorMode {
 
 /// The modes of weighted draws, at `points` (u x n, in the coordinates of the basins) and in the parameters'
 /// units (`draws`, u x n), the heaviest first; those of less than a thousandth are left out. A draw belongs
-/// to the nearest basin in its own metric; basins that a valley connects, or that have no gap between them,
-/// are one: a ridge, or a basin found twice.
+/// to the nearest basin in its own metric; basins that are connected (findConnections), or that have no gap
+/// between them, are one: a ridge, or a basin found twice.
 std::vector<PosteriorMode> findModes(const Eigen::MatrixXd& points, const Eigen::MatrixXd& draws,
                                      const Eigen::VectorXd& weights, const std::vector<Basin>& basins,
-                                     const Valleys& valleys);
+                                     const std::vector<std::pair<std::size_t, std::size_t>>& connected);
 
 }  // namespace twinmap

@@ -14,44 +14,14 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Points (u x n) that are put off from the mean of the draws in one coordinate each, the others as the
-/// draws go along with it; and the coordinates, as unit vectors.
-struct Ends {
-  MatrixXd points, coordinates;
-};
-
-Ends listEnds(const importance::WeightedDraws& draws) {
-  constexpr double kReach = 5.0, kLeastReach = 0.8 * kReach;  // standard deviations
-  const VectorXd mean = importance::calcMean(draws);
-  const MatrixXd covariance = importance::calcCovariance(draws);
-  const Index u = mean.size();
-  Ends ends{MatrixXd(u, 2 * u), MatrixXd(u, 2 * u)};
-  Index count = 0;
-  for (Index j = 0; j < u; ++j) {
-    const double stddev = std::sqrt(covariance(j, j));
-    for (const double side : {-1.0, 1.0}) {
-      const double apart = std::min(kReach * stddev, 1.0 - side * mean[j]);
-      if (stddev > 0.0 && apart >= kLeastReach * stddev) {
-        const VectorXd point = mean + side * apart * covariance.col(j) / covariance(j, j);
-        ends.points.col(count) = point.cwiseMax(-1.0).cwiseMin(1.0);
-        ends.coordinates.col(count++) = VectorXd::Unit(u, j);
-      }
-    }
-  }
-  return {ends.points.leftCols(count), ends.coordinates.leftCols(count)};
-}
-
 constexpr int kValues = 13, kStartsPerValue = 4;
 
 /// Where a profile looks: even steps of a coordinate over what bears some of the posterior.
 VectorXd listValues(const importance::WeightedDraws& draws, Index j) {
-  constexpr double kReach =
-      3.0;                       // standard deviations: 4.5 below the largest of a normal density's logarithm
-  constexpr double kEnd = 1e-3;  // a ridge ends at bounds, beyond which nothing fits
   const double mean = importance::calcMean(draws)[j];
-  const double reach = kReach * std::sqrt(importance::calcCovariance(draws)(j, j));
+  const double reach = kBasinReach * std::sqrt(importance::calcCovariance(draws)(j, j));
   const VectorXd ends = importance::calcQuantiles({draws.points.row(j), draws.weights},
-                                                  (VectorXd(2) << kEnd, 1.0 - kEnd).finished())
+                                                  (VectorXd(2) << kRareLevel, 1.0 - kRareLevel).finished())
                             .transpose();
   return VectorXd::LinSpaced(kValues, std::max(ends[0], mean - reach), std::min(ends[1], mean + reach));
 }
@@ -74,9 +44,8 @@ MatrixXd listStarts(const importance::WeightedDraws& draws, Index j, double valu
 /// Searches from starts in which coordinate j stays, as many in a row for each value, and keeps the best of
 /// each.
 void search(MisfitSurface& surface, Index j, const MatrixXd& starts, std::vector<LocalSurface>& best) {
-  constexpr int kIterations = 10;
   SearchTeam team(surface, starts, VectorXd::Unit(starts.rows(), j).replicate(1, starts.cols()));
-  team.run(kIterations);
+  team.run(kFewIterations);
   for (Index i = 0; i < starts.cols(); ++i) {
     const LocalSurface& local = team.getLocal(i);
     LocalSurface& kept = best[static_cast<std::size_t>(i * kValues / starts.cols())];
@@ -84,23 +53,6 @@ void search(MisfitSurface& surface, Index j, const MatrixXd& starts, std::vector
       kept = local;
     }
   }
-}
-
-/// What was found at the values next to each, put there: with several flat directions searches end early.
-MatrixXd startFromNeighbours(const std::vector<LocalSurface>& best, Index j, const VectorXd& values,
-                             const MatrixXd& starts) {
-  constexpr Index kNeighbours = 2;
-  MatrixXd neighbours(starts.rows(), kNeighbours * kValues);
-  for (Index i = 0; i < kValues; ++i) {
-    const Index others[kNeighbours] = {std::max<Index>(i - 1, 0), std::min<Index>(i + 1, kValues - 1)};
-    for (Index k = 0; k < kNeighbours; ++k) {
-      const LocalSurface& other = best[static_cast<std::size_t>(others[k])];
-      auto start = neighbours.col(kNeighbours * i + k);
-      start = other.simulated ? other.at : VectorXd(starts.col(i * kStartsPerValue));
-      start[j] = values[i];
-    }
-  }
-  return neighbours;
 }
 
 Profile calcProfile(MisfitSurface& surface, const importance::WeightedDraws& draws, Index j) {
@@ -113,7 +65,6 @@ Profile calcProfile(MisfitSurface& surface, const importance::WeightedDraws& dra
   }
   std::vector<LocalSurface> best(kValues);
   search(surface, j, starts, best);
-  search(surface, j, startFromNeighbours(best, j, values, starts), best);
   Profile profile{j, MatrixXd(u, kValues), VectorXd(kValues)};
   Index found = 0;
   for (const LocalSurface& local : best) {
@@ -128,20 +79,6 @@ Profile calcProfile(MisfitSurface& surface, const importance::WeightedDraws& dra
 }
 
 }  // namespace
-
-bool endTooEarly(MisfitSurface& surface, const importance::WeightedDraws& draws, double least_misfit) {
-  constexpr int kIterations = 6;
-  constexpr double kProfileRise = 1.5;
-  const Ends ends = listEnds(draws);
-  if (ends.points.cols() == 0) {
-    return false;
-  }
-  SearchTeam team(surface, ends.points, ends.coordinates);
-  team.run(kIterations);
-  const std::vector<LocalSurface> profile = team.listEnds();
-  return std::any_of(profile.begin(), profile.end(),
-                     [&](const LocalSurface& local) { return local.misfit < least_misfit + kProfileRise; });
-}
 
 std::vector<Profile> calcProfiles(MisfitSurface& surface, const importance::WeightedDraws& draws,
                                   double least_misfit, Index count) {

@@ -1,15 +1,14 @@
 #include "framework/estimation/posterior/sampling_ways.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 #include <numeric>
 #include <optional>
 
 #include "framework/estimation/posterior/basins/straight_ridge.hpp"
+#include "framework/estimation/posterior/basins/valley.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
-#include "framework/estimation/posterior/profile_likelihood.hpp"
 
 namespace twinmap {
 
@@ -26,12 +25,6 @@ std::string findObstacle(const PosteriorProblem& problem, MisfitSurface& surface
   }
   if (problem.drawn > kManyUnknown && !hasArrived(basins.front())) {
     return "the searches ended on the way to a minimum";
-  }
-  // where the first round did, the posterior is what the linear models of the basins say
-  const bool is_adapted = sampling.drawn.rounds > 1 && problem.drawn == surface.getDimensions();
-  if (sampling.drawn.isReliable() && is_adapted &&
-      endTooEarly(surface, sampling.drawn.draws, basins.front().local.misfit)) {
-    return "the draws end where the measurement still fits";
   }
   return sampling.drawn.findObstacle();
 }
@@ -66,6 +59,19 @@ ChosenShape chooseShape(const PosteriorProblem& problem, const BasinSearch& foun
   return shape;
 }
 
+/// Where the draws fall into several modes, looks whether valleys connect these: at the end of a ridge draws
+/// are few, and seem to lie apart from the others.
+void connectModes(MisfitSurface& surface, Sampling& sampling) {
+  const importance::WeightedDraws& draws = sampling.drawn.draws;
+  Landscape& landscape = sampling.landscape;
+  if (surface.getDimensions() <= kManyUnknown && sampling.obstacle.empty() &&
+      findModes(draws.points, draws.points, draws.weights,
+                projectBasins(landscape.basins, draws.points.rows()), {})
+              .size() > 1) {
+    landscape.connected = findConnections(surface, landscape.basins);
+  }
+}
+
 /// In the logarithms but for what the shape says.
 Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found, const ChosenShape& shape,
                       ProblemSurface& whole, const PosteriorDrawOptions& options) {
@@ -78,20 +84,14 @@ Sampling sampleBasins(const PosteriorProblem& problem, const BasinSearch& found,
   MisfitSurface& surface = straight ? straight->upd() : whole.upd();
   sampling.drawn = drawPosterior(surface, sampling.landscape, problem.drawn, options);
   sampling.obstacle = findObstacle(problem, surface, sampling);
+  connectModes(surface, sampling);
   sampling.simulations = straight ? surface.getSimulations() : 0;
   return sampling;
 }
 
-/// What the basins on a ridge show to be identified (findRidges), with points of its floor where they are
-/// few.
-std::vector<Ridge> findRidgesOf(std::vector<Basin> basins, MisfitSurface& surface,
+/// What the basins on a ridge show to be identified (findRidges).
+std::vector<Ridge> findRidgesOf(const std::vector<Basin>& basins, const LogCoordinates& coordinates,
                                 const std::vector<ParameterSpec>& unknown) {
-  constexpr std::size_t kEnough = 6;
-  if (basins.size() < kEnough) {
-    std::vector<Basin> floors = followValleys(surface, basins).floors;
-    std::move(floors.begin(), floors.end(), std::back_inserter(basins));
-  }
-  const LogCoordinates& coordinates = surface.getCoordinates();
   std::vector<MatrixXd> information;
   MatrixXd points(coordinates.getCount(), static_cast<Index>(basins.size()));
   for (std::size_t k = 0; k < basins.size(); ++k) {
@@ -103,21 +103,10 @@ std::vector<Ridge> findRidgesOf(std::vector<Basin> basins, MisfitSurface& surfac
   return findRidges(information, points, unknown);
 }
 
-/// Where the draws fall into several modes, looks whether the valleys between these connect them: at the end
-/// of a ridge draws are few, and seem to lie apart from the others.
-void connectModes(MisfitSurface& surface, Sampling& sampling) {
-  const importance::WeightedDraws& draws = sampling.drawn.draws;
-  Landscape& landscape = sampling.landscape;
-  if (sampling.obstacle.empty() &&
-      findModes(draws.points, draws.points, draws.weights, landscape.basins, landscape.valleys).size() > 1) {
-    landscape.valleys = followValleys(surface, landscape.basins);
-  }
-}
-
 /// With the sums that alone are determined in the place of parameters, if there are some; else not reliable.
 Sampling sampleSums(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                     const PosteriorDrawOptions& options) {
-  const std::vector<Ridge> ridges = findRidgesOf(found.basins, whole.upd(), problem.unknown);
+  const std::vector<Ridge> ridges = findRidgesOf(found.basins, whole.getCoordinates(), problem.unknown);
   const SumCoordinates sums(problem.unknown, ridges);
   Sampling sampling;
   sampling.obstacle = "no sums are known";

@@ -61,7 +61,7 @@ void setDraws(const AdaptiveDraws& drawn, const Landscape& landscape, const LogC
   posterior.covariance = importance::calcCovariance(draws);
   posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
   posterior.modes = findModes(drawn.draws.points, posterior.draws, posterior.weights,
-                              projectBasins(landscape.basins, coordinates.getCount()), landscape.valleys);
+                              projectBasins(landscape.basins, coordinates.getCount()), landscape.connected);
 }
 
 /// What is identified is seen from the valleys, however badly they are sampled.

@@ -75,10 +75,10 @@ struct SimulatorPosteriorOptions : PosteriorDrawOptions {
 
 /// Finds every basin (findBasins), then samples all of them together (importance::sampleAdaptively) in
 /// LogCoordinates, with sums in the parameters themselves (findRidgeShape), from a mixture of what the linear
-/// models in the basins say. Where the draws cannot be believed, or end where the measurement still fits
-/// (endTooEarly), they come from drawAlongWalks(), in the parameters as they are. Without a map or a
-/// surrogate. given: points of the unknown parameters (u x n) to search from as well. The result depends on
-/// neither threads nor other measurements. Cost: some 2000 simulations for the basins and `draws` a round.
+/// models in the basins say. Where the draws cannot be believed, they come from drawAlongWalks(), in the
+/// parameters as they are. Without a map or a surrogate. given: points of the unknown parameters (u x n) to
+/// search from as well. The result depends on neither threads nor other measurements. Cost: some 2000
+/// simulations for the basins and `draws` a round.
 SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Eigen::MatrixXd& given,
                                    const SimulatorPosteriorOptions& options);
 

@@ -6,6 +6,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -16,7 +17,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kChiSquareLevel = 0.999;
 constexpr double kMinTestReach = 0.5;                  // standard deviations
 constexpr double kMinRise = 0.25, kLargestRise = 3.0;  // of what the linear model says
 
@@ -83,7 +83,7 @@ double calcReach(const SearchBox& box, const VectorXd& at, const VectorXd& way, 
 }
 
 double calcChiSquareLimit(double degrees) {
-  return boost::math::quantile(boost::math::chi_squared(degrees), kChiSquareLevel);
+  return boost::math::quantile(boost::math::chi_squared(degrees), 1.0 - kRareLevel);
 }
 
 double calcChiSquareLimit(const LocalMisfit& minimum) {

@@ -8,6 +8,7 @@
 
 #include "framework/estimation/derived/value_distribution.hpp"
 #include "framework/estimation/estimate.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -20,8 +21,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Per half-width^2: the data leave half of the box's standard deviation, sqrt(3 / (3 + information)) = 1/2.
-constexpr double kFlatInformation = 9.0;
+constexpr double kSettledAcross = 0.1;    // standard deviations across: adds 1 % to chi-square of a degree
+constexpr std::size_t kMostPieces = 192;  // pieces, and those under way
 
 Index countFlat(const LocalMisfit& minimum) {
   return (linalg::calcSymmetricEigenvalues(minimum.calcInformationWithin()).array() < kFlatInformation)
@@ -83,14 +84,12 @@ class RidgeWalk {
   const std::vector<RidgePiece>& getPieces() const { return pieces_; }
 
  private:
-  static constexpr double kSettled = 0.1;  // standard deviations across: adds 1 % to chi-square of a degree
-
   /// A Gauss-Newton step across the ridge.
   struct AcrossStep {
     VectorXd end;   ///< where it leads to
     double length;  ///< standard deviations
 
-    bool isSettled() const { return length < kSettled; }
+    bool isSettled() const { return length < kSettledAcross; }
   };
 
   /// All pieces of a ridge that is straight between its ends, as that of a sum is: the middle, both ends and
@@ -126,15 +125,15 @@ class RidgeWalk {
 
   /// Pieces beyond this one within the bounds and the search's limits, if the ridge goes straight on.
   Index countWithin(const RidgePiece& middle, double step) const {
-    constexpr Index kMost = 96;  // half of those that a walk takes
+    const auto most = static_cast<Index>(kMostPieces / 2);  // on either side
     RidgePiece piece = middle;
-    for (Index i = 0; i < kMost; ++i) {
+    for (Index i = 0; i < most; ++i) {
       piece.local.at += step * piece.tangent;
       if (misfit_.getBox().clamp(piece.local.at) != piece.local.at || !cutAtBounds(piece)) {
         return i;
       }
     }
-    return kMost;
+    return most;
   }
 
   /// Whether the ridge passes through `end` in the same direction with about the same weight.
@@ -146,7 +145,7 @@ class RidgeWalk {
     }
     const VectorXd turned = across_.transpose() * (middle.tangent - section.tangent);
     const double way = (end.at - middle.local.at).dot(along_);
-    return std::abs(way) * std::sqrt(turned.dot(section.information * turned)) < kSettled &&
+    return std::abs(way) * std::sqrt(turned.dot(section.information * turned)) < kSettledAcross &&
            std::abs(section.log_height - middle.log_height) < kAlike;
   }
 
@@ -154,10 +153,8 @@ class RidgeWalk {
   /// simulated together cost little more than one. Where the ridge bends too much for that, the next ones
   /// start from the last that settled.
   bool walk(double step) {
-    constexpr std::size_t kMost = 192;    // and those under way
-    constexpr double kNegligible = 18.0;  // exp(-18) of the weight
     RidgePiece last = pieces_.front();
-    while (pieces_.size() < kMost) {
+    while (pieces_.size() < kMostPieces) {
       const MatrixXd ahead = lookAhead(last, step);
       if (ahead.cols() == 0) {
         return true;  // the limits of the search stop it
@@ -167,7 +164,7 @@ class RidgeWalk {
         return ahead.col(0).cwiseAbs().maxCoeff() > 1.0;  // beyond the bounds it need not go on
       }
       for (std::size_t i = 0; i < settled.size() && settled[i]; ++i) {
-        if (!add(*settled[i]) || pieces_.back().log_weight < pieces_.front().log_weight - kNegligible) {
+        if (!add(*settled[i]) || pieces_.back().log_weight < pieces_.front().log_weight - 0.5 * kBasinAbove) {
           return true;
         }
       }
@@ -202,11 +199,10 @@ class RidgeWalk {
   /// Steps across the ridge from each point until they are small; nothing where they do not become so or a
   /// simulation fails.
   std::vector<std::optional<LocalMisfit>> settleAll(MatrixXd points) {
-    constexpr int kMostSteps = 6;
     std::vector<std::optional<LocalMisfit>> settled(static_cast<std::size_t>(points.cols()));
     std::vector<Index> open(settled.size());
     std::iota(open.begin(), open.end(), Index{0});
-    for (int k = 0; k < kMostSteps && !open.empty(); ++k) {
+    for (int k = 0; k < kFewIterations && !open.empty(); ++k) {
       const std::vector<LocalMisfit> found = misfit_.linearizeAll(points(Eigen::all, open));
       std::vector<Index> left;
       for (std::size_t i = 0; i < open.size(); ++i) {
@@ -262,12 +258,11 @@ class RidgeWalk {
   /// The part of half a step on both sides that may be within the bounds, given the standard deviations
   /// across the ridge.
   bool cutAtBounds(RidgePiece& piece) const {
-    constexpr double kBeyond = 3.0;
     piece.from = -0.5 * step_;
     piece.to = 0.5 * step_;
     for (Index j = 0; j < piece.tangent.size(); ++j) {
       const double slope = piece.tangent[j], at = piece.local.at[j];
-      const double limit = 1.0 + kBeyond * std::sqrt(piece.covariance(j, j));
+      const double limit = 1.0 + kBasinReach * std::sqrt(piece.covariance(j, j));
       if (std::abs(slope) < 1e-12) {
         if (std::abs(at) > limit) {
           return false;
@@ -329,7 +324,6 @@ Mixture makePieces(const std::vector<RidgePiece>& pieces) {
 IntervalFactor calcFactor(const std::vector<RidgePiece>& pieces, const VectorXd& weights, Index j,
                           double mean, double stddev) {
   constexpr Index kPlaces = 10, kAcross = 25;
-  constexpr double kFarthest = 3.0;
   const Index count = static_cast<Index>(pieces.size()) * kPlaces * kAcross;
   VectorXd distances(count), shares(count);
   Index k = 0;
@@ -339,7 +333,7 @@ IntervalFactor calcFactor(const std::vector<RidgePiece>& pieces, const VectorXd&
     for (Index place = 0; place < kPlaces; ++place) {
       const double along =
           piece.from + (piece.to - piece.from) * (static_cast<double>(place) + 0.5) / kPlaces;
-      for (const double z : VectorXd::LinSpaced(kAcross, -kFarthest, kFarthest)) {
+      for (const double z : VectorXd::LinSpaced(kAcross, -kBasinReach, kBasinReach)) {
         distances[k] = std::abs(piece.local.at[j] + along * piece.tangent[j] + z * across - mean) / stddev;
         shares[k++] = weights[static_cast<Index>(i)] * std::exp(-0.5 * z * z);
       }
@@ -350,7 +344,6 @@ IntervalFactor calcFactor(const std::vector<RidgePiece>& pieces, const VectorXd&
 }
 
 RidgeTrace summarize(const std::vector<RidgePiece>& pieces) {
-  constexpr double kHardlyMoves = 0.1;  // of the standard deviation across: the sum is normal
   RidgeTrace trace{makePieces(pieces), {}, {}, {}};
   const MatrixXd covariance = calcCovariance(trace.pieces);
   const Index s = covariance.rows();
@@ -359,7 +352,7 @@ RidgeTrace summarize(const std::vector<RidgePiece>& pieces) {
   trace.factors = {MatrixXd::Constant(s, 1, kNormal50), MatrixXd::Constant(s, 1, kNormal95)};
   for (Index j = 0; j < s; ++j) {
     const VectorXd moved = trace.pieces.means.row(j).transpose().array() - trace.mean[j];
-    if (moved.cwiseAbs().maxCoeff() > kHardlyMoves * trace.stddev[j]) {
+    if (moved.cwiseAbs().maxCoeff() > kSettledAcross * trace.stddev[j]) {
       trace.factors.set(j, 0, calcFactor(pieces, trace.pieces.weights, j, trace.mean[j], trace.stddev[j]));
     }
   }

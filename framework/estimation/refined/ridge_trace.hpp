@@ -21,7 +21,7 @@ struct RidgeTrace {
 bool hasFlatDirection(const LocalMisfit& minimum);
 
 /// Follows the one flat direction from a minimum to the bounds on both sides, or to where the misfit has
-/// risen by 36. The direction is the eigenvector of least information; a piece's place is found by
+/// risen by 25. The direction is the eigenvector of least information; a piece's place is found by
 /// Gauss-Newton steps across it, so that a ridge may bend (m L = const) and is followed as a profile
 /// likelihood is. Its weight is exp(-misfit / 2) over the square root of the determinant of the
 /// information across: Laplace's approximation across, quadrature along, within the box and its prior.

@@ -3,11 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+#include <limits>
 #include <optional>
 
-#include "kernels/linalg/decompositions.hpp"
+#include "framework/estimation/refined/damped_steps.hpp"
 
 namespace twinmap {
 
@@ -17,93 +16,43 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// From nearly a Gauss-Newton step to a short one along the steepest descent. One of them fits wherever the
-/// linear model holds for some length, so that no iteration is lost on finding it.
-constexpr std::array<double, 4> kDampings{0.01, 1.0, 30.0, 1000.0};
-constexpr double kFirstDamping = 1e-3, kMinDamping = 1e-10, kMaxDamping = 1e7;
-constexpr double kLongestStep = 0.3;  // half-widths
-constexpr double kBeyondLimit = 1.0;  // as kConverged, where the limits of the box stop it
-constexpr double kHidden = 0.3;       // the same where the misfit is too rough to go on: adds 4 %
+constexpr double kFirstDamping = 1e-3;  // from a map's answer nearly a Gauss-Newton step
+constexpr double kLongestStep = 0.3;    // half-widths
+constexpr double kBeyondLimit = 1.0;    // as kConverged, where the limits of the box stop it
+constexpr double kHidden = 0.3;         // the same where the misfit is too rough to go on: adds 4 %
 
-/// The parameters that a step may move: those at a limit whose descent points outwards are held.
-std::vector<Index> findFree(const LocalMisfit& local, const SearchBox& box) {
-  std::vector<Index> free;
-  for (Index j = 0; j < local.at.size(); ++j) {
-    const bool held = (local.at[j] <= box.getLower()[j] && local.descent[j] < 0.0) ||
-                      (local.at[j] >= box.getUpper()[j] && local.descent[j] > 0.0);
-    if (!held) {
-      free.push_back(j);
-    }
-  }
-  return free;
-}
-
-/// (H + damping diag(H)) step = descent for the free parameters; the others stay.
-VectorXd calcStep(const LocalMisfit& local, const SearchBox& box, double damping) {
-  const std::vector<Index> free = findFree(local, box);
-  VectorXd step = VectorXd::Zero(local.at.size());
-  if (!free.empty()) {
-    MatrixXd damped = local.calcHessian()(free, free);
-    damped.diagonal() *= 1.0 + damping;
-    step(free) = linalg::solvePositiveDefinite(damped, local.descent(free));
-  }
-  return step;
-}
-
-VectorXd take(const LocalMisfit& local, const SearchBox& box, const VectorXd& step) {
-  const double length = step.cwiseAbs().maxCoeff();
-  return box.clamp(local.at + std::min(1.0, kLongestStep / length) * step);
-}
-
-/// The points that the dampings lead to, a column each.
-MatrixXd makeTrials(const LocalMisfit& local, const SearchBox& box, double damping) {
-  MatrixXd trials(local.at.size(), kDampings.size());
-  for (std::size_t i = 0; i < kDampings.size(); ++i) {
-    trials.col(static_cast<Index>(i)) = take(local, box, calcStep(local, box, damping * kDampings[i]));
-  }
-  return trials;
-}
-
-/// The best of the trials and its index, where it is better than `local`: with derivatives at all of them,
-/// or, where that costs more, at the best alone.
-struct BestTrial {
-  std::optional<LocalMisfit> local;
-  Index index = 0;
-};
-
-BestTrial findBest(Misfit& misfit, const LocalMisfit& local, const MatrixXd& trials) {
-  BestTrial best;
-  if (!misfit.linearizesTogether()) {
-    if (misfit.evaluate(trials).minCoeff(&best.index) < local.misfit) {
-      best.local = misfit.linearize(trials.col(best.index));
-    }
+/// One iteration: true if it moves to a better point, with derivatives at all that are tried, or, where that
+/// costs more, at the best alone.
+bool improve(Misfit& misfit, LocalMisfit& local, DampedSteps& steps) {
+  const MatrixXd hessian = local.calcHessian();
+  const LinearModel model{local.at, local.misfit, hessian, local.descent};
+  const MatrixXd tried = steps.propose(model);
+  std::vector<LocalMisfit> all;
+  VectorXd misfits;
+  if (misfit.linearizesTogether()) {
+    all = misfit.linearizeAll(tried);
+    misfits = VectorXd::NullaryExpr(tried.cols(), [&](Index i) {
+      const LocalMisfit& one = all[static_cast<std::size_t>(i)];
+      return one.status.ok ? one.misfit : std::numeric_limits<double>::infinity();
+    });
   } else {
-    const std::vector<LocalMisfit> all = misfit.linearizeAll(trials);
-    double least = local.misfit;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (all[i].status.ok && all[i].misfit < least) {
-        least = all[i].misfit;
-        best = {all[i], static_cast<Index>(i)};
-      }
-    }
+    misfits = misfit.evaluate(tried);
   }
-  if (best.local && !best.local->status.ok) {
-    best.local.reset();
-  }
-  return best;
-}
-
-/// Tries all dampings from `local`. Moves to the best one if it improves the misfit, and centres the damping
-/// on it. Otherwise raises the damping beyond all that were tried.
-bool improve(Misfit& misfit, LocalMisfit& local, double& damping) {
-  BestTrial best = findBest(misfit, local, makeTrials(local, misfit.getBox(), damping));
-  if (!best.local) {
-    damping *= 10.0 * kDampings.back();
+  const std::optional<Index> best = steps.choose(model, tried, misfits);
+  if (!best) {
     return false;
   }
-  damping = std::max(damping * kDampings[static_cast<std::size_t>(best.index)], kMinDamping);
-  local = std::move(*best.local);
-  return true;
+  LocalMisfit reached =
+      all.empty() ? misfit.linearize(tried.col(*best)) : all[static_cast<std::size_t>(*best)];
+  const bool moves = reached.status.ok;
+  if (moves) {
+    local = std::move(reached);
+  }
+  return moves;
+}
+
+StepBounds getLimits(const SearchBox& box) {
+  return {box.getLower(), box.getUpper(), {}, kLongestStep};
 }
 
 /// How far the step goes where the limits do not stop it, in standard deviations.
@@ -116,7 +65,9 @@ double calcFreeLength(const LocalMisfit& local) {
 
 NewtonStep calcNewtonStep(const LocalMisfit& local, const SearchBox& box) {
   const VectorXd stddev = local.calcCovariance().diagonal().cwiseSqrt();
-  const VectorXd step = box.clamp(local.at + calcStep(local, box, 0.0)) - local.at;
+  const MatrixXd hessian = local.calcHessian();
+  const VectorXd step =
+      DampedSteps(getLimits(box)).calcNewtonStep({local.at, local.misfit, hessian, local.descent});
   return {step, step.cwiseQuotient(stddev).cwiseAbs().maxCoeff()};
 }
 
@@ -127,11 +78,11 @@ SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
     end.message = end.local.status.reason;
     return end;
   }
-  double damping = kFirstDamping;
+  DampedSteps steps(getLimits(misfit.getBox()), kFirstDamping);
   NewtonStep newton = calcNewtonStep(end.local, misfit.getBox());
-  while (!(newton.length < kConverged) && end.iterations < max_iterations && damping < kMaxDamping) {
+  while (!(newton.length < kConverged) && end.iterations < max_iterations && !steps.areExhausted()) {
     ++end.iterations;
-    if (improve(misfit, end.local, damping)) {
+    if (improve(misfit, end.local, steps)) {
       newton = calcNewtonStep(end.local, misfit.getBox());
     }
   }
@@ -142,9 +93,9 @@ SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
   } else if (at_rest) {
     end.message = "the search ended at the bounds, and the minimum lies beyond";
   } else {
-    end.message = damping < kMaxDamping
-                      ? fmt::format("the search did not converge in {} iterations", max_iterations)
-                      : "no step improves the misfit";
+    end.message = steps.areExhausted()
+                      ? "no step improves the misfit"
+                      : fmt::format("the search did not converge in {} iterations", max_iterations);
   }
   return end;
 }

@@ -174,13 +174,12 @@ TermGradients calcTermGradients(const FlatDirections& flat, const std::vector<Pa
 
 /// The best coefficients of a sum of terms; all of them matter, or it is another sum.
 Combination fitSum(const TermGradients& gradients, const std::vector<Index>& chosen) {
-  constexpr double kMatters = 0.02;  // of the largest, in scaled terms
   const MatrixXd flat = gradients.flat(chosen, chosen);
   const VectorXd best = linalg::calcSymmetricEigen(flat).vectors.col(0);
   Combination sum;
   sum.residual =
       std::sqrt(std::max(0.0, best.dot(flat * best)) / best.dot(gradients.whole(chosen, chosen) * best));
-  if (best.cwiseAbs().minCoeff() < kMatters * best.cwiseAbs().maxCoeff()) {
+  if (best.cwiseAbs().minCoeff() < kMattersInSum * best.cwiseAbs().maxCoeff()) {
     sum.residual = 1.0;
   }
   for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -193,14 +192,13 @@ Combination fitSum(const TermGradients& gradients, const std::vector<Index>& cho
 
 void roundCoefficients(Combination& sum, const FlatDirections& flat,
                        const std::vector<ParameterSpec>& parameters) {
-  constexpr double kWorse = 1e-3;
   Combination rounded = sum;
   for (double& coefficient : rounded.coefficients) {
     coefficient = roundCoefficient(coefficient);
   }
   rounded.residual = calcResidual(rounded, flat, parameters);
   sum.residual = calcResidual(sum, flat, parameters);
-  if (rounded.residual < sum.residual + kWorse) {
+  if (rounded.residual < sum.residual + kExact) {
     sum = rounded;
   }
 }
@@ -314,7 +312,6 @@ std::vector<Candidate> findSums(const FlatDirections& flat, const std::vector<Pa
 
 std::vector<Candidate> findBaseParameters(const FlatDirections& flat,
                                           const std::vector<ParameterSpec>& parameters, double largest) {
-  constexpr double kMatters = 1e-3;      // of scaled terms
   constexpr std::size_t kMostTerms = 3;  // longer ones fit any smooth function: they name nothing
   const TermGradients gradients = calcTermGradients(flat, parameters);
   std::vector<Index> independent;
@@ -326,7 +323,7 @@ std::vector<Candidate> findBaseParameters(const FlatDirections& flat,
     for (std::size_t j = 0; j < independent.size(); ++j) {
       const double weight = weights[static_cast<Index>(j)];
       rest -= weight * gradients.flat(independent[j], k);
-      if (std::abs(weight) > kMatters) {
+      if (std::abs(weight) > kExact) {
         sum.terms.push_back(gradients.terms[static_cast<std::size_t>(independent[j])]);
         sum.coefficients.push_back(-weight / gradients.scale[independent[j]]);
       }

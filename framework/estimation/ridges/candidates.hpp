@@ -7,6 +7,11 @@
 
 namespace twinmap {
 
+/// Residual of a function that is exact, but for rounding.
+constexpr double kExact = 1e-3;
+/// Of the largest term, what a sum is not written without.
+constexpr double kMattersInSum = 0.01;
+
 /// A function that may be identified, and how complicated it is to read.
 struct Candidate {
   Combination combination;

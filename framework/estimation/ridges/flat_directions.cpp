@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -14,10 +15,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The data leave half of the box's standard deviation: sqrt(12 / (12 + information)) = 1/2.
-constexpr double kFlatInformation = 36.0;
-constexpr double kOfBox = 12.0;  // information of a uniform distribution over one width
-
 /// What the information at one point says (p x p both).
 struct KnownThere {
   MatrixXd projector;   ///< on the flat directions
@@ -26,9 +23,10 @@ struct KnownThere {
 
 KnownThere splitInformation(const MatrixXd& information) {
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(information);
-  const Index flat = (eigen.values.array() < kFlatInformation).count(), rest = eigen.values.size() - flat;
+  const Index flat = (eigen.values.array() < 4.0 * kFlatInformation).count(),
+              rest = eigen.values.size() - flat;
   const MatrixXd level = eigen.vectors.leftCols(flat), steep = eigen.vectors.rightCols(rest);
-  const VectorXd variances = (eigen.values.tail(rest).array() + kOfBox).inverse();
+  const VectorXd variances = (eigen.values.tail(rest).array() + kUniformInformation).inverse();
   return {level * level.transpose(), steep * variances.asDiagonal() * steep.transpose()};
 }
 
@@ -55,7 +53,9 @@ MeanKnown average(const std::vector<KnownThere>& known, Index parameters) {
 /// times what else is unknown of it. They must move it by 1 % of its width.
 VectorXd calcLeastShares(const MeanKnown& mean) {
   constexpr double kTakesPart = 0.03, kThreeTimes = 9.0, kPercent = 1e-4;
-  return (kOfBox * kThreeTimes * mean.determined).cwiseMax(kOfBox * kPercent).cwiseMin(kTakesPart);
+  return (kUniformInformation * kThreeTimes * mean.determined)
+      .cwiseMax(kUniformInformation * kPercent)
+      .cwiseMin(kTakesPart);
 }
 
 /// Parameters that are joined by large entries of the mean of the projectors' absolute values.
@@ -99,7 +99,6 @@ Index findCommonest(const std::vector<Index>& numbers) {
 /// The directions of a group; without changes where the points disagree on their number.
 FlatDirections takeGroup(const std::vector<Index>& group, const std::vector<KnownThere>& known,
                          const MatrixXd& points) {
-  constexpr std::size_t kMinPoints = 3;
   std::vector<Index> dimensions;
   for (const KnownThere& one : known) {
     dimensions.push_back(std::lround(one.projector(group, group).trace()));
@@ -115,7 +114,7 @@ FlatDirections takeGroup(const std::vector<Index>& group, const std::vector<Know
     }
   }
   flat.points = points(Eigen::all, taken);
-  if (taken.size() < kMinPoints || 2 * taken.size() < known.size()) {
+  if (taken.size() < kMinRidgePoints || 2 * taken.size() < known.size()) {
     flat.changes.clear();
   }
   return flat;
@@ -149,8 +148,8 @@ std::vector<FlatDirections> findFlatDirections(const std::vector<MatrixXd>& info
 }
 
 bool mayBeFlat(const MatrixXd& covariance) {
-  constexpr double kBoxVariance = 1.0 / 12.0, kShare = 0.25;
-  return !(linalg::calcSymmetricEigen(covariance).values.maxCoeff() < kShare * kShare * kBoxVariance);
+  return !(kUniformInformation * linalg::calcSymmetricEigen(covariance).values.maxCoeff() <
+           kMayBeFlat * kMayBeFlat);
 }
 
 }  // namespace twinmap

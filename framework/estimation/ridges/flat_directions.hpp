@@ -5,6 +5,9 @@
 
 namespace twinmap {
 
+/// Fewer points do not show how a ridge bends.
+constexpr std::size_t kMinRidgePoints = 3;
+
 /// Parameters that can be changed together without a change of the features, and how, at several points.
 struct FlatDirections {
   std::vector<Eigen::Index> parameters;  ///< g, ascending

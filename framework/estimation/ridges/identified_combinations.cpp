@@ -23,7 +23,7 @@ using Eigen::VectorXd;
 
 /// How well a function fits: exact flat directions leave rounding; weak ones are directions of little
 /// information, which products and sums describe to some percent.
-constexpr std::array<double, 3> kResiduals{1e-3, 1e-2, 5e-2};
+constexpr std::array<double, 3> kResiduals{kExact, 1e-2, 5e-2};
 
 /// The functions that were chosen, by their gradients at every point.
 class ChosenFunctions {
@@ -165,10 +165,9 @@ std::vector<Ridge> nameRidges(const std::vector<FlatDirections>& flat,
 
 std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const MatrixXd& points,
                               const std::vector<ParameterSpec>& parameters, RidgePoints of) {
-  constexpr std::size_t kMost = 64;
   std::vector<MatrixXd> looked_at;
   std::vector<Index> places;
-  for (std::size_t i = 0; i < information.size() && looked_at.size() < kMost; ++i) {
+  for (std::size_t i = 0; i < information.size() && looked_at.size() < kMostPoints; ++i) {
     if (information[i].size() > 0) {
       looked_at.push_back(information[i]);
       places.push_back(static_cast<Index>(i));

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "framework/estimation/ridges/candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -47,11 +48,10 @@ void reduceColumns(MatrixXd& columns) {
 
 /// A column as a sum of the parameters, without what hardly matters.
 Combination makeSum(const VectorXd& column, const FlatDirections& flat, const VectorXd& widths) {
-  constexpr double kMatters = 0.01;  // of the largest, in widths
   Combination sum;
   for (Index k = 0; k < column.size(); ++k) {
     const Index j = flat.parameters[static_cast<std::size_t>(k)];
-    if (std::abs(column[k]) > kMatters * column.cwiseAbs().maxCoeff()) {
+    if (std::abs(column[k]) > kMattersInSum * column.cwiseAbs().maxCoeff()) {
       sum.terms.emplace_back(VectorXi::Unit(widths.size(), j));
       sum.coefficients.push_back(column[k] / widths[j]);
     }

@@ -39,8 +39,7 @@ bool mayHaveRidges(const BoundedDraws& draws, const std::vector<ParameterSpec>& 
 std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,
                                   const FeatureNoise& noise, const ModelSpec& model, const MatrixXd& points,
                                   int threads) {
-  constexpr Index kMost = 32;
-  const MatrixXd chosen = points.leftCols(std::min(kMost, points.cols()));
+  const MatrixXd chosen = points.leftCols(std::min<Index>(kMostPoints, points.cols()));
   const auto p = static_cast<Index>(model.parameters.size());
   return findRidges(calcInformation(simulator, extractor, noise, model, chosen, threads), chosen.topRows(p),
                     model.parameters, RidgePoints::kOfOneMeasurement);

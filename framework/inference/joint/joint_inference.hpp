@@ -58,7 +58,7 @@ struct JointInference {
     return model_test && model_test->missing ? &*model_test->missing : nullptr;
   }
 
-  bool disagrees() const { return agreement && agreement->p_value < kAgreementLevel; }
+  bool disagrees() const { return agreement && agreement->p_value < kMismatchLevel; }
 };
 
 /// Names of what one or several recordings have that their files do not state: "outliers", "clock_fault",
@@ -67,7 +67,7 @@ std::vector<std::string> listRecordingFaults(const std::vector<RecordingInferenc
 
 /// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
 /// "model_mismatch" (of a recording alone), "missing_term", "at_bounds", "trials_disagree" (below
-/// kAgreementLevel), listRecordingFaults(), "unreliable", "multimodal", "uninformative"; {"ok"} where nothing
+/// kMismatchLevel), listRecordingFaults(), "unreliable", "multimodal", "uninformative"; {"ok"} where nothing
 /// is. Of the first `parameters`, the machine's.
 std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
 

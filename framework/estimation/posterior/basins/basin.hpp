@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/basins/misfit_surface.hpp"
 
 namespace twinmap {
@@ -17,11 +18,6 @@ struct Basin {
   Eigen::MatrixXd covariance;  ///< u x u: of the linear model, with the box as a normal distribution
   int searches = 0;            ///< that ended in it
 };
-
-/// Of chi-square, between the best basin and others: for the same volume they bear a share of 4e-6.
-constexpr double kBasinAbove = 25.0;
-
-constexpr double kBasinReach = 3.0;  ///< of a basin, in standard deviations
 
 /// From its best point, in its standard deviations.
 double calcDistance(const Basin& basin, const Eigen::VectorXd& at);

@@ -30,12 +30,11 @@ bool isExplained(const std::vector<Basin>& basins) {
 /// The ends of searches of more and more of the response, each from where the last one ended. A chaotic
 /// response has many minima. Its beginning has few, which lie where the next ones do.
 std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
-  constexpr int kIterations = 8;  // where a window ends is but the next one's start
   const std::size_t windows = surface.countWindows();
   for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
     surface.setWindow(i);
     SearchTeam team(surface, starts);
-    team.run(kIterations);
+    team.run(kFewIterations);
     const std::vector<LocalSurface> ends = team.listEnds();
     starts.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
     for (std::size_t k = 0; k < ends.size(); ++k) {
@@ -63,7 +62,6 @@ const Basin& findNearest(const std::vector<Basin>& basins, const VectorXd& at) {
 /// of these places first, but for what noise could be.
 MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, const MatrixXd& points) {
   constexpr Index kPlaces = 3;
-  constexpr double kNoticed = 1.0;
   MatrixXd ways(points.rows(), kPlaces * points.cols());
   for (Index i = 0; i < points.cols(); ++i) {
     const VectorXd& from = findNearest(basins, points.col(i)).local.at;
@@ -78,7 +76,7 @@ MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, con
     double before = findNearest(basins, points.col(i)).local.misfit;
     Index lowest = -1;
     for (Index k = i * kPlaces; k < (i + 1) * kPlaces; ++k) {
-      if (std::isfinite(reached[k]) && reached[k] < before - kNoticed) {
+      if (std::isfinite(reached[k]) && reached[k] < before - kBarrier) {
         lowest = lowest < 0 || reached[k] < reached[lowest] ? k : lowest;
       }
       before = reached[k];
@@ -91,47 +89,11 @@ MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, con
   return ways(Eigen::all, falls);
 }
 
-/// Places along the flattest direction of basins, both ways as far as the bounds allow, on the floor of its
-/// valley: corrected at right angles to it. Impacts and sticking cut a valley into several hills, each so
-/// narrow that searches from afar end in any of them.
-MatrixXd followFloors(MisfitSurface& surface, const std::vector<Basin>& basins) {
-  constexpr double kReaches[] = {-8.0, -4.0, 4.0, 8.0};  // standard deviations
-  constexpr std::size_t kMost = 2;
-  constexpr int kIterations = 4;
-  const Index u = surface.getDimensions();
-  MatrixXd places(u, 0), held(u, 0);
-  for (std::size_t k = 0; k < std::min(kMost, basins.size()); ++k) {
-    const linalg::SymmetricEigen axes = linalg::calcSymmetricEigen(basins[k].covariance);
-    const VectorXd flattest = axes.vectors.rightCols(1);
-    for (const double reach : kReaches) {
-      const VectorXd place = basins[k].local.at + reach * std::sqrt(axes.values[u - 1]) * flattest;
-      if (place.cwiseAbs().maxCoeff() <= 1.0) {
-        places.conservativeResize(Eigen::NoChange, places.cols() + 1);
-        places.rightCols(1) = place;
-        held.conservativeResize(Eigen::NoChange, places.cols());
-        held.rightCols(1) = flattest;
-      }
-    }
-  }
-  if (places.cols() == 0) {
-    return places;
-  }
-  SearchTeam team(surface, places, held);
-  team.run(kIterations);
-  const std::vector<LocalSurface> ends = team.listEnds();
-  places.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
-  for (std::size_t k = 0; k < ends.size(); ++k) {
-    places.col(static_cast<Index>(k)) = ends[k].at;
-  }
-  return places;
-}
-
 /// Of many parameters, the best basin and those others that are minima. Searches of so many end early
 /// (choosePace), and creep along bent valleys: where they are given up looks like minima beside the one to
 /// which the valley leads, or is taken for it. A few iterations more reach a minimum that is near; what does
 /// not arrive is none.
 std::vector<Basin> keepMinima(MisfitSurface& surface, std::vector<Basin> basins, int max_iterations) {
-  constexpr int kIterations = 10;  // some three suffice near a minimum
   const bool arrived = !basins.empty() && hasArrived(basins.front());
   const Index first = arrived ? 1 : 0, count = static_cast<Index>(basins.size()) - first;
   if (surface.getDimensions() <= kManyUnknown || count <= 0) {
@@ -141,7 +103,7 @@ std::vector<Basin> keepMinima(MisfitSurface& surface, std::vector<Basin> basins,
   for (Index k = 0; k < count; ++k) {
     starts.col(k) = basins[static_cast<std::size_t>(first + k)].local.at;
   }
-  const int iterations = arrived ? kIterations : max_iterations;
+  const int iterations = arrived ? kFewIterations : max_iterations;
   SearchTeam team(surface, starts);
   if (arrived) {
     team.setKnown({basins.front()});
@@ -226,21 +188,6 @@ class BasinHunt {
     }
   }
 
-  /// Along the valleys of the best basins, where the scouts did not do, as long as a better one is found
-  /// there.
-  void searchFloors() {
-    constexpr int kMost = 3;
-    for (int i = 0; i < kMost && isExplained() && found_.starts >= options_.starts; ++i) {
-      const double least = found_.basins.front().local.misfit;
-      if (const MatrixXd places = followFloors(surface_, found_.basins); places.cols() > 0) {
-        search(places);
-      }
-      if (!(found_.basins.front().local.misfit < least)) {
-        return;
-      }
-    }
-  }
-
  private:
   void add(std::vector<LocalSurface> ends) {
     ends_.insert(ends_.end(), std::make_move_iterator(ends.begin()), std::make_move_iterator(ends.end()));
@@ -273,7 +220,6 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
   if (hunt.isExplained() && hunt.isConfirmed()) {
     hunt.probe();
     if (hunt.isConfirmed()) {
-      hunt.searchFloors();
       return hunt.getFound();
     }
   }
@@ -297,7 +243,6 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
       break;
     }
   }
-  hunt.searchFloors();
   return hunt.getFound();
 }
 

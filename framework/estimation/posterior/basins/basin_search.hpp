@@ -47,11 +47,11 @@ struct BasinSearchOptions {
 /// The minima of a surface that may bear some of the posterior: chi-square at most 25 above the best.
 /// Searches go side by side (SearchTeam). Where the first of them agree on a basin that noise explains,
 /// points all over the box follow, each with the way to it from the nearest basin: if chi-square does not
-/// rise all along the way, a search starts where it falls again. Else more searches follow; where the best
-/// end is not explained by noise and the response has windows that grow (RefinementModel), all are searched
-/// again from windows that grow. Where the scouts did not do, searches follow from the floors of the best
-/// basins' valleys, too. `given`: points (u x n, may be empty) to search from as well. The starts
-/// depend on `seed` alone. Cost: some 10 simulations, 5 of them with derivatives, a search; 3 a probe.
+/// rise all along the way, a search starts where it falls again by more than noise does. Else more searches
+/// follow; where the best end is not explained by noise and the response has windows that grow
+/// (RefinementModel), all are searched again from windows that grow. `given`: points (u x n, may be empty) to
+/// search from as well. The starts depend on `seed` alone. Cost: some 10 simulations, 5 of them with
+/// derivatives, a search; 3 a probe.
 BasinSearch findBasins(MisfitSurface& surface, const Eigen::MatrixXd& given, std::uint64_t seed,
                        const BasinSearchOptions& options = {});
 

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "framework/estimation/refined/acceptance.hpp"
-#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -15,92 +13,19 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// From nearly a Gauss-Newton step to a short one: one of them fits wherever the linear model holds at all.
-constexpr double kDampings[] = {0.01, 1.0, 30.0};
-constexpr double kFirstDamping = 1e-2, kMinDamping = 1e-9, kMaxDamping = 1e8, kRaise = 100.0;
-constexpr double kHeldLinear = 0.75;      // of the gain that the linear model says
-constexpr double kLongestStep = 0.5;      // half of a coordinate's bounds
-constexpr double kFirstDiagonal = 1e-12;  // of the largest: what the response does not depend on stays
-constexpr double kFarAbove = 50.0;        // of the best chi-square: e^-25 of its density
+constexpr double kFarAbove = 50.0;  // of the best chi-square: e^-25 of its density
 
-/// The coordinates that a step may move: those at a bound whose descent points outwards are held.
-std::vector<Index> findFree(const LocalSurface& local) {
-  std::vector<Index> free;
-  for (Index j = 0; j < local.at.size(); ++j) {
-    if (!(std::abs(local.at[j]) >= 1.0 && local.at[j] * local.descent[j] > 0.0)) {
-      free.push_back(j);
-    }
-  }
-  return free;
+LinearModel getModel(const LocalSurface& local) {
+  return {local.at, local.misfit, local.information, local.descent};
 }
 
-/// What a step of the free coordinates may be made of (f x k): all of them, or what is at right angles to the
-/// direction that is held.
-MatrixXd makeBasis(const VectorXd& held, const std::vector<Index>& free) {
-  const auto count = static_cast<Index>(free.size());
-  Index largest = 0;
-  if (held.size() == 0 || !(held(free).cwiseAbs().maxCoeff(&largest) > 0.0)) {
-    return MatrixXd::Identity(count, count);
-  }
-  MatrixXd basis = MatrixXd::Zero(count, count - 1);
-  for (Index i = 0, k = 0; i < count; ++i) {
-    if (i != largest) {
-      basis(i, k) = 1.0;
-      basis(largest, k++) =
-          -held[free[static_cast<std::size_t>(i)]] / held[free[static_cast<std::size_t>(largest)]];
-    }
-  }
-  return basis;
-}
-
-/// (I + damping diag(I)) step = descent for the free coordinates, what has been stepped of the others given.
-VectorXd solveFree(const LocalSurface& local, const VectorXd& held, double damping,
-                   const std::vector<Index>& free, const VectorXd& stepped) {
-  VectorXd step = stepped;
-  const MatrixXd basis = makeBasis(held, free);
-  if (basis.cols() == 0) {
-    return step;
-  }
-  const VectorXd descent = local.descent - local.information * stepped;
-  MatrixXd damped = basis.transpose() * local.information(free, free) * basis;
-  const double floor = kFirstDiagonal * damped.diagonal().maxCoeff() + std::numeric_limits<double>::min();
-  damped.diagonal() = (1.0 + damping) * damped.diagonal().array() + floor;
-  step(free) = basis * linalg::solvePositiveDefinite(damped, basis.transpose() * descent(free));
-  return step;
-}
-
-/// The step of Levenberg and Marquardt within the bounds: coordinates that it would take beyond them end
-/// there, and the others are solved for again, as those make up for these no longer.
-VectorXd calcStep(const LocalSurface& local, const VectorXd& held, double damping) {
-  std::vector<Index> free = findFree(local);
-  VectorXd step = VectorXd::Zero(local.at.size());
-  while (!free.empty()) {
-    const VectorXd all = solveFree(local, held, damping, free, step);
-    const auto leaves = [&](Index j) { return std::abs(local.at[j] + all[j]) > 1.0; };
-    const auto left = std::stable_partition(free.begin(), free.end(), [&](Index j) { return !leaves(j); });
-    if (left == free.end() || held.size() > 0) {
-      return all;
-    }
-    std::for_each(left, free.end(), [&](Index j) { step[j] = std::copysign(1.0, all[j]) - local.at[j]; });
-    free.erase(left, free.end());
-  }
-  return step;
+StepBounds makeBounds(Index dimensions, VectorXd held) {
+  return {VectorXd::Constant(dimensions, -1.0), VectorXd::Ones(dimensions), std::move(held)};
 }
 
 /// What a Gauss-Newton step would gain of chi-square if the linear model held.
-double predictGain(const LocalSurface& local, const VectorXd& held) {
-  return local.descent.dot(calcStep(local, held, kMinDamping));
-}
-
-VectorXd take(const LocalSurface& local, const VectorXd& step) {
-  const double length = step.cwiseAbs().maxCoeff();
-  const double scale = length > kLongestStep ? kLongestStep / length : 1.0;
-  return (local.at + scale * step).cwiseMax(-1.0).cwiseMin(1.0);
-}
-
-/// What a step gains of chi-square if the linear model holds.
-double calcLinearGain(const LocalSurface& local, const VectorXd& step) {
-  return 2.0 * step.dot(local.descent) - step.dot(local.information * step);
+double predictGain(const LocalSurface& local, const DampedSteps& steps) {
+  return local.descent.dot(steps.calcNewtonStep(getModel(local)));
 }
 
 }  // namespace
@@ -110,7 +35,7 @@ SearchPace choosePace(Index dimensions) {
 }
 
 double calcGainLeft(const LocalSurface& local) {
-  return predictGain(local, {});
+  return predictGain(local, DampedSteps(makeBounds(local.at.size(), {})));
 }
 
 SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const MatrixXd& held)
@@ -118,9 +43,11 @@ SearchTeam::SearchTeam(MisfitSurface& surface, const MatrixXd& starts, const Mat
   std::vector<LocalSurface> locals = surface.linearize(starts);
   for (std::size_t i = 0; i < locals.size(); ++i) {
     const bool simulated = locals[i].simulated;
-    searches_.push_back({std::move(locals[i]),
-                         held.cols() > 0 ? VectorXd(held.col(static_cast<Index>(i))) : VectorXd(),
-                         kFirstDamping, simulated});
+    searches_.push_back(
+        {std::move(locals[i]),
+         DampedSteps(makeBounds(starts.rows(),
+                                held.cols() > 0 ? VectorXd(held.col(static_cast<Index>(i))) : VectorXd())),
+         simulated});
   }
 }
 
@@ -138,8 +65,7 @@ void SearchTeam::showProgress(SearchStage& stage) const {
 
 void SearchTeam::run(int max_iterations) {
   SearchStage stage("searches that have ended", static_cast<int>(searches_.size()));
-  constexpr int kJudgedAgainstKnown = 3;  // what must be better than a known basin, sooner
-  const int first_judged = known_.empty() ? pace_.first_judged : kJudgedAgainstKnown;
+  const int first_judged = pace_.first_judged;
   for (int i = 1; i <= max_iterations && improve(); ++i) {
     showProgress(stage);
     if (i == first_judged || i == 2 * first_judged) {
@@ -177,41 +103,34 @@ bool SearchTeam::improve() {
   if (active.empty()) {
     return false;
   }
+  std::vector<MatrixXd> tried;
   Index count = 0;
-  for (Search* search : active) {
-    search->factors.assign(std::begin(kDampings),
-                           search->linear ? std::begin(kDampings) + 1 : std::end(kDampings));
-    count += static_cast<Index>(search->factors.size());
+  for (const Search* search : active) {
+    tried.push_back(search->steps.propose(getModel(search->local)));
+    count += tried.back().cols();
   }
   MatrixXd trials(surface_.getDimensions(), count);
   Index column = 0;
-  for (const Search* search : active) {
-    for (const double factor : search->factors) {
-      trials.col(column++) =
-          take(search->local, calcStep(search->local, search->held, search->damping * factor));
-    }
+  for (const MatrixXd& one : tried) {
+    trials.middleCols(column, one.cols()) = one;
+    column += one.cols();
   }
   const VectorXd reached = surface_.calcMisfits(trials);
   std::vector<Search*> moved;
   std::vector<Index> columns;
   column = 0;
-  for (Search* search : active) {
-    const auto tried = static_cast<Index>(search->factors.size());
-    Index best = 0;
-    const double least = reached.segment(column, tried).minCoeff(&best);
-    search->before = search->local.misfit;
-    if (least < search->local.misfit) {
-      const double expected = calcLinearGain(search->local, trials.col(column + best) - search->local.at);
-      search->linear = best == 0 && search->local.misfit - least > kHeldLinear * expected;
-      search->damping = std::max(search->damping * kDampings[best], kMinDamping);
-      moved.push_back(search);
-      columns.push_back(column + best);
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    Search& search = *active[i];
+    search.before = search.local.misfit;
+    const auto best =
+        search.steps.choose(getModel(search.local), tried[i], reached.segment(column, tried[i].cols()));
+    if (best) {
+      moved.push_back(&search);
+      columns.push_back(column + *best);
     } else {
-      search->damping *= search->linear ? 1.0 : kRaise;
-      search->linear = false;
-      search->active = search->damping < kMaxDamping;
+      search.active = !search.steps.areExhausted();
     }
-    column += tried;
+    column += tried[i].cols();
   }
   move(moved, trials(Eigen::all, columns));
   return true;
@@ -224,7 +143,7 @@ void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
   std::vector<LocalSurface> reached = surface_.linearize(to);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     Search& search = *moved[i];
-    search.active = reached[i].simulated && predictGain(reached[i], search.held) > pace_.converged;
+    search.active = reached[i].simulated && predictGain(reached[i], search.steps) > pace_.converged;
     if (reached[i].simulated) {
       search.local = std::move(reached[i]);
       settle(search);
@@ -245,15 +164,15 @@ SearchTeam::Place SearchTeam::findPlace(const Search& search) const {
   if (!pace_.leads) {
     return {local.at, local.misfit};
   }
-  const VectorXd step = calcStep(local, search.held, kMinDamping);
-  return {take(local, step), local.misfit - local.descent.dot(step)};
+  const VectorXd step = search.steps.calcNewtonStep(getModel(local));
+  return {search.steps.take(getModel(local), step), local.misfit - local.descent.dot(step)};
 }
 
 /// Ends a search that has come into a known basin, both by its place and by its chi-square. A packet of lanes
 /// costs as much for the last searches as for all of them. One that has converged elsewhere makes a basin
 /// known.
 void SearchTeam::settle(Search& search) {
-  if (search.held.size() > 0) {
+  if (search.steps.getBounds().held.size() > 0) {
     return;
   }
   const Place place = findPlace(search);

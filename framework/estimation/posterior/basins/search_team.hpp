@@ -5,6 +5,7 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/estimation/posterior/basins/basin.hpp"
+#include "framework/estimation/refined/damped_steps.hpp"
 
 namespace twinmap {
 
@@ -26,11 +27,9 @@ SearchPace choosePace(Eigen::Index dimensions);
 /// What is left to gain of chi-square within the bounds by the linear model.
 double calcGainLeft(const LocalSurface& local);
 
-/// Searches for minima of chi-square that go side by side, by Levenberg and Marquardt's method: an iteration
-/// is a batch of simulations, three dampings for each search or one where its linear model held the last
-/// time, and a batch with derivatives for those that moved. Parameters at a bound whose descent points
-/// outwards are held. Searches far above the best are given up; those that come into a basin that another
-/// has found end there, where they are not held.
+/// Searches for minima of chi-square that go side by side (DampedSteps): an iteration is a batch of
+/// simulations and a batch with derivatives for those that moved. Searches far above the best are given up;
+/// those that come into a basin that another has found end there, where they are not held.
 class SearchTeam {
  public:
   /// starts: u x n. Search i does not move along column i of `held` (u x n; empty: all move freely).
@@ -52,12 +51,9 @@ class SearchTeam {
  private:
   struct Search {
     LocalSurface local;
-    Eigen::VectorXd held;  ///< u, the direction in which it stays; or empty
-    double damping;
+    DampedSteps steps;
     bool active;
-    bool linear = false;            ///< whether the last step gained what the linear model said
-    double before = 0.0;            ///< chi-square before the last iteration
-    std::vector<double> factors{};  ///< of the damping, that an iteration tries
+    double before = 0.0;  ///< chi-square before the last iteration
   };
 
   struct Place {

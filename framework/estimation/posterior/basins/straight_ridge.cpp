@@ -15,9 +15,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of a direction's information, in half-widths: the bounds are within some three standard deviations.
-constexpr double kLevelInformation = 4.0 * kHalfWidthInformation;
-
 /// How far from `at` a direction leads within the bounds.
 double calcReach(const VectorXd& at, const VectorXd& direction) {
   double reach = std::numeric_limits<double>::infinity();
@@ -38,19 +35,18 @@ struct Bend {
 
 /// The directions whose bend matters, both ways as far as the bounds allow.
 std::vector<Bend> listBends(MisfitSurface& surface, const Basin& basin) {
-  constexpr double kShortest = 0.1;  // standard deviations, at a bound
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(basin.covariance);
   const Index flattest = eigen.values.size() - 1;
   std::vector<Bend> bends;
   MatrixXd points(basin.local.at.size(), 0);
   for (Index k = flattest; k >= 0; --k) {
-    if (k < flattest && eigen.values[k] < 1.0 / (kLevelInformation + kHalfWidthInformation)) {
+    if (k < flattest && eigen.values[k] < 1.0 / (kFlatInformation + kHalfWidthInformation)) {
       break;
     }
     for (const double side : {-1.0, 1.0}) {
       const VectorXd direction = side * std::sqrt(eigen.values[k]) * eigen.vectors.col(k);
       const double reach = std::min(1.0, calcReach(basin.local.at, direction));
-      if (reach > kShortest) {
+      if (reach > 0.0) {
         points.conservativeResize(Eigen::NoChange, points.cols() + 1);
         points.rightCols(1) = basin.local.at + reach * direction;
         bends.push_back({direction, direction.dot(basin.local.information * direction), {}});
@@ -159,7 +155,7 @@ Basin levelBasin(const Basin& basin) {
   Basin levelled = basin;
   VectorXd variances = (eigen.values.array() + kHalfWidthInformation).inverse();
   VectorXd& at = levelled.local.at;
-  for (Index k = 0; k < eigen.values.size() && eigen.values[k] < kLevelInformation; ++k) {
+  for (Index k = 0; k < eigen.values.size() && eigen.values[k] < kFlatInformation; ++k) {
     const VectorXd direction = eigen.vectors.col(k);
     const double lower = -calcReach(at, -direction), upper = calcReach(at, direction);
     if (upper > lower) {

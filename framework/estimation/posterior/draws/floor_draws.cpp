@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/levels.hpp"
+#include "framework/estimation/ridges/flat_directions.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -25,9 +27,10 @@ struct LocalValley {
 
 /// False where the place is not on the floor.
 bool findValley(const LocalSurface& place, LocalValley& valley) {
-  constexpr double kQuarter = 16.0 * kHalfWidthInformation, kFarthest = 1.0;
+  constexpr double kFarthest = 1.0;
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(place.information);
-  const Index steep = (eigen.values.array() >= kQuarter).count(), level = eigen.values.size() - steep;
+  const Index steep = (kMayBeFlat * kMayBeFlat * eigen.values.array() >= kHalfWidthInformation).count(),
+              level = eigen.values.size() - steep;
   valley.across =
       eigen.vectors.rightCols(steep) * eigen.values.tail(steep).cwiseSqrt().cwiseInverse().asDiagonal();
   const VectorXd open = eigen.values.head(level).cwiseMax(0.0).array() + kHalfWidthInformation;
@@ -118,7 +121,6 @@ std::vector<PlaceMoments> sumAtPlaces(const FloorDraws& draws, const VectorXd& v
 }  // namespace
 
 bool FloorDraws::determine(const VectorXd& values) const {
-  constexpr double kFewest = 3.0;  // as of points that show a ridge
   constexpr double kTenth = 10.0, kHalf = 2.0;
   if (!isGiven() || !values.allFinite()) {
     return false;
@@ -130,7 +132,8 @@ bool FloorDraws::determine(const VectorXd& values) const {
     open += one.weight * one.open;
     squares += one.weight * one.weight;
   }
-  return 1.0 >= kFewest * squares && kHalf * between <= all && kTenth * open <= all;
+  return 1.0 >= static_cast<double>(kMinRidgePoints) * squares && kHalf * between <= all &&
+         kTenth * open <= all;
 }
 
 FloorDraws drawAcrossValleys(const std::vector<LocalSurface>& places, const LogCoordinates& coordinates,

@@ -140,12 +140,11 @@ double calcNonlinearity(MisfitSurface& surface, const Basin& basin, std::uint64_
 }
 
 bool areOneBasin(const MisfitSurface& surface, const std::vector<Basin>& basins) {
-  constexpr double kApart = 5.0;
   const LocalSurface& first = basins.front().local;
   const MatrixXd information = first.information - surface.linearizePrior(first.at).information;
   return std::all_of(basins.begin() + 1, basins.end(), [&](const Basin& other) {
     const VectorXd apart = other.local.at - first.at;
-    return apart.dot(information * apart) < kApart * kApart;
+    return apart.dot(information * apart) < kBasinAbove;
   });
 }
 

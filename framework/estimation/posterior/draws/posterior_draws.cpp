@@ -100,14 +100,12 @@ BoxMixture proposeFirst(const std::vector<Basin>& basins, const VectorXd& shares
   return BoxMixture(std::move(parts));
 }
 
-/// Where the draws of the first round go: basins and floors of valleys, by the shares of their masses.
+/// Where the draws of the first round go: basins, by the shares of their masses.
 BoxMixture propose(const MisfitSurface& surface, const Landscape& landscape, Index drawn) {
   std::vector<Basin> places = landscape.basins;
-  const std::vector<Basin>& floors = landscape.valleys.floors;
-  places.insert(places.end(), floors.begin(), floors.end());
   const VectorXd shares = calcShares(places, surface);
   if (landscape.is_straight) {
-    std::transform(landscape.basins.begin(), landscape.basins.end(), places.begin(), levelBasin);
+    std::transform(places.begin(), places.end(), places.begin(), levelBasin);
   }
   return proposeFirst(projectBasins(std::move(places), drawn), shares);
 }
@@ -123,7 +121,7 @@ Basin convertBasin(const Basin& basin, const SumCoordinates& sums) {
   return converted;
 }
 
-/// By mixtures from basins and floors of valleys.
+/// By mixtures from basins.
 AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, Index drawn,
                            const PosteriorDrawOptions& options) {
   Numbers numbers(drawn, options);
@@ -144,7 +142,6 @@ AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, I
 /// Of many parameters about a bent response, where its bend is more than weights make good.
 AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, bool has_many,
                            const PosteriorDrawOptions& options) {
-  constexpr int kMostRounds = 8;         // where no mixture follows
   constexpr double kNearlyLinear = 0.7;  // variance of log weights: half of the draws count
   const Basin& basin = landscape.basins.front();
   if (!has_many) {
@@ -154,10 +151,10 @@ AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, b
       landscape.nonlinearity ? *landscape.nonlinearity : calcNonlinearity(surface, basin, options.seed);
   if (!(nonlinearity < kNearlyLinear)) {
     if (const auto minima = RandomizedMinima::measure(surface, basin)) {
-      return sampleRandomizedMinima(surface, *minima, options.draws, kMostRounds, options.seed);
+      return sampleRandomizedMinima(surface, *minima, options.draws, kMaxRounds, options.seed);
     }
   }
-  return sampleLinearized(surface, basin, options.draws, kMostRounds, options.seed);
+  return sampleLinearized(surface, basin, options.draws, kMaxRounds, options.seed);
 }
 
 /// Where chains begin: all over the valley, some at the basins' minima. From a minimum in a corner of the box
@@ -186,7 +183,7 @@ std::vector<Basin> projectBasins(std::vector<Basin> basins, Index drawn) {
   return basins;
 }
 
-AdaptiveDraws drawPosterior(MisfitSurface& surface, Landscape& landscape, Index kept,
+AdaptiveDraws drawPosterior(MisfitSurface& surface, const Landscape& landscape, Index kept,
                             const PosteriorDrawOptions& options) {
   const bool has_many = kept > kManyUnknown;
   if (has_many || (surface.getDimensions() > kFewUnknown && areOneBasin(surface, landscape.basins))) {
@@ -198,7 +195,6 @@ AdaptiveDraws drawPosterior(MisfitSurface& surface, Landscape& landscape, Index 
       return drawn;
     }
   }
-  landscape.valleys = followValleys(surface, landscape.basins);
   return drawMixtures(surface, landscape, kept, options);
 }
 
@@ -214,14 +210,11 @@ AdaptiveDraws drawInSums(MisfitSurface& surface, const std::vector<Basin>& basin
     }
     return points;
   };
-  constexpr int kRounds = 4;  // the ridge is straight, or other sums than these are determined
-  importance::AdaptiveOptions adaptive = makeOptions();
-  adaptive.max_rounds = kRounds;
   Numbers numbers(surface.getDimensions(), options);
   AdaptiveDraws drawn = importance::sampleAdaptively(
       [&](const MatrixXd& points) { return surface.calcLogPosteriors(convert(points)); },
       proposeFirst(straight, calcShares(basins, surface)),
-      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, adaptive);
+      [&](int round) -> const RoundNumbers& { return numbers.get(round); }, makeOptions());
   drawn.draws.points = convert(drawn.draws.points);
   return drawn;
 }

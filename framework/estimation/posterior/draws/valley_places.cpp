@@ -32,8 +32,6 @@ VectorXd startFromNearest(const std::vector<Basin>& basins, Index j, double valu
 
 std::vector<LocalSurface> findValleyPlaces(MisfitSurface& surface, const std::vector<Basin>& basins,
                                            std::uint64_t seed) {
-  constexpr int kIterations = 8;
-  constexpr double kBears = 25.0;  // as of basins: e^-12.5 of the density
   const Index u = surface.getDimensions(), values = static_cast<Index>(std::size(kValues));
   const Index starts_per_value = 1 + kElsewhere;
   const MatrixXd elsewhere = makeStarts(u, seed, static_cast<int>(u * values * kElsewhere));
@@ -50,10 +48,10 @@ std::vector<LocalSurface> findValleyPlaces(MisfitSurface& surface, const std::ve
     }
   }
   SearchTeam team(surface, starts, held);
-  team.run(kIterations);
+  team.run(kFewIterations);
   std::vector<LocalSurface> places = team.listEnds();
   const auto bears = [&](const LocalSurface& end) {
-    return end.misfit < basins.front().local.misfit + kBears;
+    return end.misfit < basins.front().local.misfit + kBasinAbove;
   };
   places.erase(std::stable_partition(places.begin(), places.end(), bears), places.end());
   return places;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/autoregressive_whitener.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -34,10 +35,9 @@ double calcRestricted(const ResidualSeries& series, const VectorXd& at) {
     whitener.apply(whitened);
     log_determinant = whitener.getLogDeterminant();
   }
-  constexpr double kRelative = 1e-12;
   const Index u = series.regressors.cols();
   MatrixXd information = whitened.bottomRows(u) * whitened.bottomRows(u).transpose();
-  information.diagonal() *= 1.0 + kRelative;
+  information.diagonal() *= 1.0 + kRegular;
   information.diagonal().array() += std::numeric_limits<double>::min();
   const MatrixXd lower = linalg::calcCholesky(information).lower;
   const VectorXd explained = linalg::solveLower(lower, whitened.bottomRows(u) * whitened.row(0).transpose());

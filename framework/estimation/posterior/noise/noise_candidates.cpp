@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/estimation/posterior/noise/colour_fit.hpp"
+#include "framework/estimation/posterior/noise/outlier_loss.hpp"
 #include "framework/estimation/posterior/noise/residual_loss.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -17,22 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kOfNormal = 1.4826;  // standard deviations in a median absolute value
-constexpr double kSignificant = 3.3;  // standard errors: once in a thousand
-
-double calcMedianSize(const VectorXd& values) {
-  std::vector<double> sizes(static_cast<std::size_t>(values.size()));
-  std::transform(values.begin(), values.end(), sizes.begin(), [](double value) { return std::abs(value); });
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
-}
-
-/// A robust standard deviation about 0.
-double calcRobustSize(const VectorXd& values) {
-  return kOfNormal * calcMedianSize(values);
-}
 
 /// Makes hypotheses of one measurement's noise and tries them.
 class Candidates {
@@ -161,12 +146,11 @@ class Candidates {
 
   /// The residual about the best point of the linear model under a hypothesis.
   ResidualLoss::Standardized adjust(const NoiseHypothesis& hypothesis) const {
-    constexpr int kIterations = 4;  // weights and shares follow the residual
     const ResidualLoss loss(hypothesis, *fit_.model, window_);
     const Index u = fit_.jacobian.cols();
     VectorXd at = VectorXd::Zero(u);
     double determined = 0.0;
-    for (int i = 0; i < kIterations; ++i) {
+    for (int i = 0; i < kFewIterations; ++i) {
       const LinearLoss linear = loss.linearize(fit_.residual - fit_.jacobian * at, fit_.jacobian);
       const MatrixXd hessian = linear.information + kHalfWidthInformation * MatrixXd::Identity(u, u);
       const MatrixXd lower = linalg::calcCholesky(hessian).lower;
@@ -200,7 +184,7 @@ class Candidates {
   std::vector<int> findOffsets(const NoiseHypothesis& hypothesis) const {
     std::vector<int> outputs;
     for (const FoundNoise& noise : adjust(hypothesis).noise) {
-      if (noise.has_offset && std::abs(noise.offset) > kSignificant * noise.offset_stddev) {
+      if (noise.has_offset && std::abs(noise.offset) > kRareDeviations * noise.offset_stddev) {
         outputs.push_back(noise.output);
       }
     }
@@ -239,9 +223,8 @@ NoiseHypothesis guessSizes(NoiseHypothesis stated, const RefinementModel& model,
 }
 
 bool isLargerThanStated(const FoundNoise& noise) {
-  constexpr double kLevel = 1e-3;
   const double n = noise.effective_samples;
-  return cdf(complement(boost::math::chi_squared(n), n * noise.factor * noise.factor)) < kLevel;
+  return cdf(complement(boost::math::chi_squared(n), n * noise.factor * noise.factor)) < kRareLevel;
 }
 
 double calcSizeDeviation(const FoundNoise& noise) {

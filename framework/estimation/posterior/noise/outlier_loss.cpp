@@ -28,17 +28,20 @@ Likelihoods calcLikelihoods(double residual) {
 }
 
 double calcMedianSpread(const VectorXd& residual) {
-  constexpr double kNormal = 1.4826;  // standard deviations in a median absolute value
-  std::vector<double> sizes(static_cast<std::size_t>(residual.size()));
-  std::transform(residual.begin(), residual.end(), sizes.begin(),
-                 [](double value) { return std::abs(value); });
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  const double size = kNormal * *middle;
+  const double size = calcRobustSize(residual);
   return size > 0.0 ? size : std::sqrt(residual.squaredNorm() / static_cast<double>(residual.size()));
 }
 
 }  // namespace
+
+double calcRobustSize(const VectorXd& values) {
+  constexpr double kOfNormal = 1.4826;  // standard deviations in a median absolute value
+  std::vector<double> sizes(static_cast<std::size_t>(values.size()));
+  std::transform(values.begin(), values.end(), sizes.begin(), [](double value) { return std::abs(value); });
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return kOfNormal * *middle;
+}
 
 double calcOutlierLoss(double residual) {
   const Likelihoods likelihoods = calcLikelihoods(residual);

@@ -4,6 +4,9 @@
 
 namespace twinmap {
 
+/// A standard deviation about 0 from the median of the absolute values.
+double calcRobustSize(const Eigen::VectorXd& values);
+
 /// -2 log likelihood, relative to that of noise at 0, of a residual (in noise standard deviations) that is
 /// noise or, once in a hundred, anything: Cauchy's distribution of ten standard deviations.
 double calcOutlierLoss(double residual);

@@ -16,8 +16,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kLeast = std::numeric_limits<double>::min();
-
 /// n over the sum of squared autocorrelations: independent samples that would know a variance as well.
 double countEffective(const VectorXd& autoregression, Index n) {
   if (autoregression.size() == 0) {
@@ -185,7 +183,7 @@ void OutputLoss::projectOffset(Projected& projected) const {
     projected.log_determinant += std::log(projected.offset_information);
     projected.degrees -= 1.0;
   }
-  projected.squares = std::max(series.row(0).squaredNorm(), kLeast);
+  projected.squares = std::max(series.row(0).squaredNorm(), std::numeric_limits<double>::min());
 }
 
 std::vector<OutputLoss::Projected> OutputLoss::project(const VectorXd& residual,

@@ -14,9 +14,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kFar = -25.0;  // beyond, the normal distribution function is of tiny numbers
+
 /// The normal density over its distribution function, at z.
 double calcMillsRatio(double z) {
-  constexpr double kFar = -25.0;  // beyond, the distribution function is of tiny numbers
   if (z < kFar) {
     return -z * (1.0 + 1.0 / (z * z));  // its asymptotic series
   }
@@ -26,9 +27,8 @@ double calcMillsRatio(double z) {
 
 /// -2 log of the normal distribution function.
 double calcCensoredLoss(double z) {
-  constexpr double kNear = -25.0;
-  return z > kNear ? -2.0 * std::log(0.5 * std::erfc(-z / std::sqrt(2.0)))
-                   : z * z + std::log(2.0 * std::acos(-1.0)) + 2.0 * std::log(calcMillsRatio(z));
+  return z > kFar ? -2.0 * std::log(0.5 * std::erfc(-z / std::sqrt(2.0)))
+                  : z * z + std::log(2.0 * std::acos(-1.0)) + 2.0 * std::log(calcMillsRatio(z));
 }
 
 }  // namespace

@@ -102,13 +102,12 @@ double testWhiteness(const std::map<int, std::vector<double>>& samples) {
 }  // namespace
 
 double ResidualTest::calcPValue() const {
-  constexpr double kTests = 3.0;
-  return std::min(1.0, kTests * std::min({chi_square_p, whiteness_p, largest_p}));
+  const auto tests = {chi_square_p, whiteness_p, largest_p};
+  return std::min(1.0, static_cast<double>(tests.size()) * std::min(tests));
 }
 
 bool ResidualTest::isPlausible() const {
-  constexpr double kTooSmallLevel = 1e-3;
-  return calcPValue() >= kMismatchLevel && 1.0 - chi_square_p >= kTooSmallLevel;
+  return calcPValue() >= kMismatchLevel && 1.0 - chi_square_p >= kRareLevel;
 }
 
 ResidualTest testResidual(const VectorXd& residual, double degrees, const std::vector<FeatureInfo>& infos) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/data/features/feature_block.hpp"
+#include "framework/estimation/levels.hpp"
 
 namespace twinmap {
 
@@ -25,9 +26,6 @@ struct ResidualTest {
   /// sum of squares that is too small, in one of a thousand good measurements.
   bool isPlausible() const;
 };
-
-/// Below this p-value a measurement is a model_mismatch: of good ones 1 % are called so.
-constexpr double kMismatchLevel = 0.01;
 
 /// residual: whitened, one for each of `infos` (none: not plausible); degrees: of freedom of its sum of
 /// squares. Whiteness is tested within each output whose samples have times, over one, three and ten lags

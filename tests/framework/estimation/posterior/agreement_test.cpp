@@ -99,12 +99,12 @@ struct AlarmCount {
   void add(double p) {
     ++tests;
     below += p < 0.2 ? 1 : 0;
-    far_below += p < kAgreementLevel ? 1 : 0;
+    far_below += p < kMismatchLevel ? 1 : 0;
   }
 
   void expectTheStatedRate() const {
     EXPECT_NEAR(below / static_cast<double>(tests), 0.2, 3.0 * std::sqrt(0.16 / tests));
-    const double expected = kAgreementLevel * tests;
+    const double expected = kMismatchLevel * tests;
     EXPECT_LE(far_below, expected + 4.2 * std::sqrt(expected));  // 7 of 200, 3 of 40: p = 0.001
   }
 };
@@ -120,7 +120,7 @@ TEST(Agreement, FalseAlarmsHaveTheStatedRate) {
 
 TEST(Agreement, IsRefusedWhereOneMachineDiffers) {
   const LinearTrials trials = makeLinearTrials({40.0, 60.0, 50.0});
-  EXPECT_LT(testOnce(trials, 1, 0.05), kAgreementLevel);
+  EXPECT_LT(testOnce(trials, 1, 0.05), kMismatchLevel);
 }
 
 TEST(Agreement, ATrialThatDeterminesNothingContradictsNothing) {
@@ -164,7 +164,7 @@ TEST(Agreement, WhatATrialFitsFarFromTheJointEstimateContradictsLittle) {
         .p_value;
   };
   EXPECT_GT(test(5.0), 0.5);
-  EXPECT_LT(test(20.0), kAgreementLevel);  // chi-square of two degrees of freedom: e^-10
+  EXPECT_LT(test(20.0), kMismatchLevel);  // chi-square of two degrees of freedom: e^-10
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "framework/estimation/posterior/profile_likelihood.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "tests/framework/estimation/posterior/surface.hpp"
 
@@ -54,25 +53,6 @@ TEST(LocalWalk, GoesFromOnePlaceThroughAllOfABentValley) {
   EXPECT_NEAR(std::sqrt((first - first.mean()).square().mean()), 1.0 / std::sqrt(3.0), 0.06);
   const Eigen::ArrayXd apart = places.row(1).array() - first.square().transpose();
   EXPECT_NEAR(std::sqrt(apart.square().mean()), 0.05, 0.005);
-}
-
-TEST(ProfileEnds, NoticesDrawsOfAPartOfTheValley) {
-  Surface banana(
-      2,
-      [](const VectorXd& x) {
-        return makeVector({0.5 * x[0], 8.0 * (x[1] - x[0] * x[0])});
-      },
-      testing::makeParameters(2, -1.0, 1.0), 0.1, makeVector({0.1, 0.01}));
-  // x0 is known to .2
-  for (const double share : {1.0, 0.2}) {
-    MatrixXd points(2, 400);
-    for (Index i = 0; i < 400; ++i) {
-      const double z = std::sqrt(2.0) * std::cos(0.7 * static_cast<double>(i));  // of unit variance
-      const double x = 0.1 + 0.2 * share * z;
-      points.col(i) = makeVector({x, x * x});
-    }
-    EXPECT_EQ(endTooEarly(banana.surface, importance::weigh(points, VectorXd::Zero(400)), 0.0), share < 1.0);
-  }
 }
 
 /// Mean and standard deviation of each of x, where x0 + x1 x2 is known, by the midpoint rule: the oracle.

@@ -1,8 +1,8 @@
-#include "framework/estimation/posterior/basins/valley.hpp"
+#include "framework/estimation/posterior/basins/search_team.hpp"
 
 #include <gtest/gtest.h>
 
-#include "framework/estimation/posterior/basins/search_team.hpp"
+#include "framework/estimation/posterior/basins/valley.hpp"
 #include "framework/estimation/posterior/bound_test.hpp"
 #include "tests/framework/estimation/posterior/surface.hpp"
 
@@ -24,28 +24,17 @@ Surface makeBanana(double noise_stddev = 0.1) {
       testing::makeParameters(2, -1.0, 1.0), noise_stddev, makeVector({0.1, 0.01}));
 }
 
-TEST(Valley, FollowsTheBentFloorOfOneBasin) {
-  Surface banana = makeBanana();
-  const std::vector<Basin> basins = banana.makeBasins(makeVector({0.1, 0.01}));
-  const Valleys valleys = followValleys(banana.surface, basins);
-  ASSERT_GE(valleys.floors.size(), 2u);
-  for (const Basin& floor : valleys.floors) {
-    const VectorXd& at = floor.local.at;
-    EXPECT_NEAR(at[1], at[0] * at[0], 0.1 / 8.0);  // one standard deviation of the noise
-  }
-}
-
-TEST(Valley, ConnectsTheEndsOfABentRidge) {
+TEST(Connections, JoinTheEndsOfABentRidge) {
   Surface banana = makeBanana();
   MatrixXd ends(2, 2);
   ends << -0.9, 0.8,  //
       0.81, 0.64;
-  const Valleys valleys = followValleys(banana.surface, banana.makeBasins(ends));
-  ASSERT_EQ(valleys.connected.size(), 1u);
-  EXPECT_EQ(valleys.connected.front(), std::make_pair(std::size_t{0}, std::size_t{1}));
+  const auto connected = findConnections(banana.surface, banana.makeBasins(ends));
+  ASSERT_EQ(connected.size(), 1u);
+  EXPECT_EQ(connected.front(), std::make_pair(std::size_t{0}, std::size_t{1}));
 }
 
-TEST(Valley, LeavesModesApartThatABarrierSeparates) {
+TEST(Connections, LeaveModesApartThatABarrierSeparates) {
   Surface mirror(
       2,
       [](const VectorXd& x) {
@@ -55,15 +44,7 @@ TEST(Valley, LeavesModesApartThatABarrierSeparates) {
   MatrixXd modes(2, 2);
   modes << 0.6, -0.6,  //
       0.2, 0.2;
-  EXPECT_TRUE(followValleys(mirror.surface, mirror.makeBasins(modes)).connected.empty());
-}
-
-TEST(Valley, LeavesAStraightOneToTheBasin) {
-  Surface straight(
-      2, [](const VectorXd& x) { return VectorXd(x); }, testing::makeParameters(2, -1.0, 1.0), 0.05,
-      makeVector({0.2, 0.3}));
-  const Valleys valleys = followValleys(straight.surface, straight.makeBasins(makeVector({0.2, 0.3})));
-  EXPECT_TRUE(valleys.floors.empty());
+  EXPECT_TRUE(findConnections(mirror.surface, mirror.makeBasins(modes)).empty());
 }
 
 TEST(SearchTeam, StaysWhereItIsHeld) {

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "framework/experiment/model/parameter_box.hpp"
+
+namespace twinmap {
+
+/// What is called a mismatch or a contradiction although it is chance, once in a hundred.
+constexpr double kMismatchLevel = 0.01;
+/// What counts as impossible by chance, and a share that is left out: once in a thousand.
+constexpr double kRareLevel = 1e-3;
+/// kRareLevel in standard deviations of a normal distribution, both ways.
+constexpr double kRareDeviations = 3.3;
+/// chi-square above the best: for the same volume a place there bears a share of 4e-6 of the posterior. Also
+/// the square of how many standard deviations apart two minima are two.
+constexpr double kBasinAbove = 25.0;
+/// Standard deviations within which nearly all of a normal distribution lies, and one basin.
+constexpr double kBasinReach = 3.0;
+/// chi-square rises by that between two normal distributions that are four standard deviations apart.
+constexpr double kBarrier = 4.0;
+/// Of chi-square, where a search need not go on: a tenth of a standard deviation.
+constexpr double kLastGain = 0.01;
+/// Of searches that end where another begins, or where little is wanted: across a valley, in a window, of
+/// weights.
+constexpr int kFewIterations = 8;
+/// Of a direction, per half-width of the bounds: the data leave half of the standard deviation that the
+/// bounds allow, sqrt(3 / (3 + information)) = 1/2, so that these decide.
+constexpr double kFlatInformation = 3.0 * kHalfWidthInformation;
+/// Of the standard deviation that the bounds allow: what is narrower is surely determined, half of what is
+/// flat.
+constexpr double kMayBeFlat = 0.25;
+/// Of the largest diagonal, added to what may be singular.
+constexpr double kRegular = 1e-12;
+
+}  // namespace twinmap
