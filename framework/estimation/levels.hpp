@@ -30,5 +30,16 @@ constexpr double kFlatInformation = 3.0 * kHalfWidthInformation;
 constexpr double kMayBeFlat = 0.25;
 /// Of the largest diagonal, added to what may be singular.
 constexpr double kRegular = 1e-12;
+/// Samples of which neighbours tell whether noise is white, or a clock right.
+constexpr Eigen::Index kFewestTested = 20;
+/// Of a misfit: a simpler recording is taken for another where it leaves less.
+constexpr double kClearlyLess = 0.5;
+/// Of a misfit beyond the noise: an explanation stands for others where it takes more.
+constexpr double kMostOfMisfit = 0.9;
+/// Chi-square a residual that sensors and units make, missing physics rarely, and what of it is left by that
+/// which explains it.
+constexpr double kGrossMisfit = 100.0, kRestOfGross = 0.01;
+/// Draws that stand for a posterior where each is simulated with derivatives.
+constexpr Eigen::Index kStandingDraws = 32;
 
 }  // namespace twinmap

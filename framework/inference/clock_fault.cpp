@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/estimation/significance.hpp"
+#include "framework/estimation/levels.hpp"
 
 namespace twinmap {
 namespace {

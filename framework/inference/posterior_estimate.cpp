@@ -8,9 +8,9 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/estimation/derived/value_distribution.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
-#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -152,7 +152,7 @@ SimulatorFit makeFit(const SimulatorPosterior& posterior, const std::vector<Para
 }  // namespace
 
 bool NoiseReport::differs() const {
-  return isStated() && found.size_was_inferred && std::abs(calcSizeDeviation(found)) > kOnceInAThousand;
+  return isStated() && found.size_was_inferred && std::abs(calcSizeDeviation(found)) > kRareDeviations;
 }
 
 bool SimulatorFit::isAsStated() const {

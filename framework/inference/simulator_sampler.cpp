@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "framework/base/text/source_location.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/estimation/ridges/simulated_ridges.hpp"
-#include "framework/estimation/significance.hpp"
 #include "framework/experiment/points/prior.hpp"
 
 namespace twinmap {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
-#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_fit.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -218,7 +218,7 @@ std::optional<ClockedMeasurement> findClockFaults(const RecordedSamples& recorde
     fault.size = draws.weights.dot(own) / draws.weights.sum();
     fault.stddev =
         std::sqrt(draws.weights.dot((own.array() - fault.size).square().matrix()) / draws.weights.sum());
-    if (std::abs(fault.size) < kOnceInAThousand * fault.stddev) {
+    if (std::abs(fault.size) < kRareDeviations * fault.stddev) {
       return std::nullopt;
     }
   }

@@ -5,9 +5,9 @@
 #include <stdexcept>
 
 #include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/agreement.hpp"
 #include "framework/estimation/ridges/simulated_ridges.hpp"
-#include "framework/estimation/significance.hpp"
 #include "framework/inference/derived_values.hpp"
 
 namespace twinmap {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "framework/estimation/significance.hpp"
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -81,8 +81,8 @@ void divideByFoundNoise(const LinearizedMeasurement& local, const FeatureExtract
 
 double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extractor,
                      const Eigen::MatrixXd& responses, const SimulatorFit& fit) {
-  constexpr double kLargest = 30.0;                               // more is another signal
-  constexpr double kNamed = kOnceInAThousand * kOnceInAThousand;  // of chi-square of one degree
+  constexpr double kLargest = 30.0;                             // more is another signal
+  constexpr double kNamed = kRareDeviations * kRareDeviations;  // of chi-square of one degree
   const auto rows = static_cast<Eigen::Index>(local.features.size());
   if (responses.cols() == 0 || local.residual.size() != rows) {
     return 0.0;
@@ -94,7 +94,7 @@ double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extrac
   const std::optional<InputNoise> noise = findInputNoise(local.residual, local.jacobian, features, kLargest);
   const auto degrees = static_cast<double>(rows - local.jacobian.cols());
   return noise && noise->gain > kNamed &&
-                 noise->chi_square < degrees + kOnceInAThousand * std::sqrt(2.0 * degrees)
+                 noise->chi_square < degrees + kRareDeviations * std::sqrt(2.0 * degrees)
              ? noise->size
              : 0.0;
 }

@@ -6,7 +6,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
-#include "framework/estimation/significance.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/measurement/alternation.hpp"
 #include "framework/inference/measurement/gram_masses.hpp"

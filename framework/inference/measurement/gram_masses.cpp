@@ -2,7 +2,7 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/number_text.hpp"
-#include "framework/estimation/significance.hpp"
+#include "framework/estimation/levels.hpp"
 
 namespace twinmap {
 

@@ -10,7 +10,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/time_series.hpp"
-#include "framework/estimation/significance.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/inference/measurement/spikes.hpp"
 #include "framework/inference/measurement/wrap_modulus.hpp"
 

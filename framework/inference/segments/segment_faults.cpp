@@ -8,8 +8,8 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/noise/noise_estimate.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
-#include "framework/estimation/significance.hpp"
 #include "framework/inference/measurement/spikes.hpp"
 
 namespace twinmap {
@@ -149,7 +149,7 @@ bool takeOffsets(PosteriorEstimate& estimate, SupposedSegments& supposed) {
       }
     }
     report.found.has_offset = report.found.has_offset &&
-                              std::abs(report.found.offset) > kOnceInAThousand * report.found.offset_stddev;
+                              std::abs(report.found.offset) > kRareDeviations * report.found.offset_stddev;
   }
   std::vector<ParameterSpec>& nuisance = estimate.nuisance;  // offsets are the last
   nuisance.erase(

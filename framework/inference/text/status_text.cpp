@@ -8,7 +8,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/estimation/estimate.hpp"
-#include "framework/estimation/significance.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/explain_notice.hpp"

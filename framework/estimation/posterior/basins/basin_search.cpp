@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/basins/search_team.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
-#include "framework/estimation/significance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
 #include "kernels/linalg/decompositions.hpp"
