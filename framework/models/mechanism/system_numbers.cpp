@@ -151,9 +151,19 @@ MassNumbers calcMassNumbers(const BodySpec& body, ModelNumbers& numbers) {
                      : Vector3d::Constant(numbers.calc(about_axis, {owner, "inertia", "kg m2"}));
   mass.products = calcVector(numbers, body.inertia.products, {owner, "inertia.products", "kg m2"});
   checkRange(body, owner, mass.mass, mass.center);
-  checkInertia(owner, calcPrincipalMoments(mass.moments, mass.products),
-               about_axis.text.empty() ? body.inertia.moments[0].where : about_axis.where);
+  if (!isUnchecked(body.inertia)) {
+    checkInertia(owner, calcPrincipalMoments(mass.moments, mass.products),
+                 about_axis.text.empty() ? body.inertia.moments[0].where : about_axis.where);
+  }
   return mass;
+}
+
+void checkArmature(const ArmatureSpec& armature, ModelNumbers& numbers) {
+  const Quantity quantity{"armature of '" + armature.coordinate.text + "'", "inertia", "kg m2"};
+  const double inertia = numbers.calc(armature.inertia, quantity);
+  if (inertia < 0.0) {
+    throwUnusable(quantity, inertia, "must not be negative", armature.inertia.where);
+  }
 }
 
 JointNumbers calcJointNumbers(const BodySpec& body, ModelNumbers& numbers) {

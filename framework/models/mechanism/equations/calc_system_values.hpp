@@ -225,6 +225,9 @@ SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& syst
   for (std::size_t i = 0; i < spec.constraints.size(); ++i) {
     addClosures(spec.constraints[i], static_cast<int>(i), system, names, values.closures);
   }
+  for (const ArmatureSpec& one : spec.armature) {
+    values.armature.emplace_back(system.findForcedCoordinate(one.coordinate), names.calc(one.inertia));
+  }
   values.state_count = static_cast<int>(system.getStateNames().size());
   return values;
 }
