@@ -171,6 +171,28 @@ struct ExportArguments {
   bool trust = true;               ///< judge measurements
 };
 
+/// Of a robot's file with an estimate's numbers.
+struct RobotExportArguments {
+  std::string estimate;            ///< JSON that infer wrote, or as of infer, with a measurement
+  std::string measurement;         ///< "": `estimate` is JSON
+  std::optional<double> start;     ///< as of infer
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::string urdf;                ///< the robot's file; "": no such export
+  std::string out;                 ///< file to write; a JSON file beside it
+  bool anyway = false;             ///< also of an estimate that is not ok
+  int draws = 0;                   ///< files with numbers drawn from the estimate
+  std::string draws_folder;
+};
+
+struct ImportArguments {
+  std::string file;                     ///< URDF
+  std::string base = "fixed";           ///< or "free"
+  std::vector<std::string> parameters;  ///< inertia, friction, armature, damping
+  std::vector<std::string> joints;      ///< that move; empty: all
+  bool stops = false;                   ///< limits of joints become stops
+  bool strict = false;                  ///< what is not carried over is an error
+};
+
 struct ReplayArguments {
   std::string run;                   ///< folder of a run, or its maps.h5
   std::string file;                  ///< the measurement that is simulated again
@@ -284,6 +306,14 @@ void validate(const ValidateArguments& arguments);
 /// Prints the evidence of several experiments for the same measurements, and how well each predicts those
 /// that it is not fitted to.
 void select(const SelectArguments& arguments);
+
+/// Prints an experiment file that describes a robot, and what it leaves out on stderr. Throws ExperimentError
+/// for a file that cannot be imported, with `strict` also where anything is left out.
+void importRobot(const ImportArguments& arguments);
+
+/// Writes a robot's file with an estimate's numbers, all else as it is. Throws ExperimentError for an
+/// estimate that is not ok, and parameters that fit nothing in the file.
+void exportRobot(const RobotExportArguments& arguments);
 
 /// Writes a trained map for other programs. Throws ExperimentError for a run that cannot be exported.
 void exportMap(const ExportArguments& arguments);

@@ -1,0 +1,340 @@
+#include "framework/robots/experiment_text.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/base/text/number_text.hpp"
+#include "framework/base/text/source_location.hpp"
+#include "framework/robots/chosen_parameters.hpp"
+
+namespace twinmap::robots {
+namespace {
+
+std::string write(const Vector& v) {
+  const auto text = [](double value) { return toText(value + 0.0); };  // -0 as 0
+  return "[" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + "]";
+}
+
+bool isZero(const Vector& v) {
+  return v.x == 0.0 && v.y == 0.0 && v.z == 0.0;
+}
+
+/// ", in_parent: {point: ..., orientation: ...}", or "" at the origin.
+std::string writeFrame(const char* key, const Pose& frame) {
+  const Vector angles = calcAngles(frame.rotation);
+  std::string text;
+  if (!isZero(frame.origin)) {
+    text += "point: " + write(frame.origin);
+  }
+  if (!isZero(angles)) {
+    text += (text.empty() ? "" : ", ") + ("orientation: " + write(angles));
+  }
+  return text.empty() ? "" : fmt::format(", {}: {{{}}}", key, text);
+}
+
+/// Turns z to an axis: a planar joint of an experiment turns about its z.
+Matrix turnZ(const Vector& axis) {
+  const double length = std::sqrt(algebra::dot(axis, axis));
+  const Vector z = algebra::scale(1.0 / length, axis);
+  const Vector side = std::abs(z.x) < 0.5 ? Vector{1.0, 0.0, 0.0} : Vector{0.0, 1.0, 0.0};
+  Vector x = side - algebra::scale(algebra::dot(side, z), z);
+  x = algebra::scale(1.0 / std::sqrt(algebra::dot(x, x)), x);
+  return {x, algebra::cross(z, x), z};
+}
+
+class ExperimentWriter {
+ public:
+  ExperimentWriter(Robot& robot, const ImportOptions& options)
+      : robot_(robot),
+        options_(options),
+        chosen_(readChosen(options.parameters)),
+        bodies_(assembleBodies(robot, options.base, options.joints)),
+        names_(robot),
+        parameters_(names_, options.relative_stddev),
+        gravity_(names_.take("g")) {}
+
+  std::string write() {
+    std::string bodies;
+    for (const Body& body : bodies_) {
+      bodies += writeBody(body);
+      if (body.joint != nullptr && body.joint->isSingle()) {
+        addDrive(body);
+      }
+    }
+    noteFrames();
+    return writeHead() + writeParameters() + "system:\n  gravity: [0, 0, -" + gravity_ + "]\n  bodies:\n" +
+           bodies + writeList("force_laws", forces_) + writeList("dampers", dampers_) +
+           writeList("friction", friction_) + writeList("armature", armature_) + writeList("stops", stops_) +
+           writeList("constraints", gears_) + writeTail();
+  }
+
+ private:
+  std::string writeHead() const {
+    std::string text =
+        fmt::format("# From {} by twinmap import; lines below are of that file.\n", makeComment(robot_.file));
+    text += robot_.left_out.empty() ? "# Everything in it is here.\n" : "# Not carried over:\n";
+    for (const std::string& line : describeLeftOut(robot_)) {
+      text += "#   " + makeComment(line.substr(robot_.file.size() + 1)) + "\n";
+    }
+    return text + "name: " + makeIdentifier(robot_.name) + "\n";
+  }
+
+  static std::string makeComment(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    return text;
+  }
+
+  std::string writeParameters() const {
+    // of the sea level on Earth: 9.780 to 9.832 m/s2 (WGS 84)
+    std::string text = "parameters:\n  " + gravity_ +
+                       ": {bounds: [9.78, 9.84], unit: m/s2, description: gravity is not in a URDF}\n";
+    for (const RobotParameter& one : parameters_.getAll()) {
+      text += fmt::format("  {}: {{bounds: [{}, {}], ", one.name, toText(one.lower), toText(one.upper));
+      text += one.has_prior ? fmt::format("prior: {{normal: {{mean: {}, stddev: {}}}}}, ", toText(one.value),
+                                          toText(one.stddev))
+                            : "";
+      text += "unit: " + one.unit + "}\n";
+    }
+    return text;
+  }
+
+  std::string writeBody(const Body& body) {
+    const std::string& name = names_.getBody(body.link->name);
+    return fmt::format("    {}:\n", name) + writeMass(body, name) + writeJoint(body);
+  }
+
+  std::string writeMass(const Body& body, const std::string& name) {
+    const MassProperties mass = calcMassProperties(*body.link->inertial);
+    const std::string impossible = describeImpossible(mass.tensor);
+    if (!impossible.empty()) {
+      robot_.leaveOut(body.link->inertial->line, "inertia of link '" + body.link->name + "'",
+                      impossible +
+                          ": no body has it. It is taken as it is and not checked (unchecked: true); "
+                          "correct it by CAD, or measure it");
+    }
+    const Spread spread = calcSpread(mass);
+    const double thinnest = std::min({spread.spread.x, spread.spread.y, spread.spread.z});
+    const double widest = std::max({spread.spread.x, spread.spread.y, spread.spread.z});
+    if (chosen_.inertia && !body.on_ground && impossible.empty() && thinnest > kThin * widest) {
+      return writeChosenMass(name, mass, spread, widest);
+    }
+    if (chosen_.inertia && !body.on_ground) {
+      robot_.leaveOut(body.link->inertial->line, "--parameters inertia of link '" + body.link->name + "'",
+                      "its mass is in a plane, on a line or of no body: its numbers stay as they are");
+    }
+    const Matrix& tensor = mass.tensor;
+    return fmt::format(
+        "      mass: {}\n      center_of_mass: {}\n      inertia: {{moments: {}, products: {}{}}}\n",
+        toText(mass.mass), robots::write(mass.center), robots::write({tensor.x.x, tensor.y.y, tensor.z.z}),
+        robots::write({tensor.y.x, tensor.z.x, tensor.z.y}), impossible.empty() ? "" : ", unchecked: true");
+  }
+
+  std::string writeChosenMass(const std::string& name, const MassProperties& mass, const Spread& spread,
+                              double widest) {
+    const auto addThree = [&](const char* const(&suffixes)[3], const Vector& v, bool positive) {
+      const auto add = [&](int i, double value) {
+        const std::string wish = name + suffixes[i];
+        return positive ? parameters_.addPositive(wish, value, "m")
+                        : parameters_.add(wish, value, widest, "m");
+      };
+      const std::string x = add(0, v.x), y = add(1, v.y), z = add(2, v.z);
+      return "[" + x + ", " + y + ", " + z + "]";
+    };
+    std::string text = "      mass: " + parameters_.addPositive(name + "_mass", mass.mass, "kg") + "\n";
+    text += "      center_of_mass: " + addThree({"_cx", "_cy", "_cz"}, mass.center, false) + "\n";
+    const std::string spreads = addThree({"_lx", "_ly", "_lz"}, spread.spread, true);
+    return text + "      inertia: {spread: " + spreads +
+           ", skew: " + addThree({"_sxy", "_sxz", "_syz"}, spread.skew, false) + "}\n";
+  }
+
+  std::string writeJoint(const Body& body) {
+    std::string text = "      joint: {type: ";
+    Pose in_parent = body.in_parent, in_body = body.in_body;
+    const Joint* joint = body.joint;
+    if (joint == nullptr) {
+      text += body.is_free_base ? "free" : "weld";
+    } else if (joint->isSingle()) {
+      text += (joint->isAngle() ? "pin" : "slider") + (", axis: " + robots::write(joint->axis));
+    } else if (joint->kind == JointKind::kFloating) {
+      text += "free";
+    } else {
+      text += "planar";
+      const Pose turn{turnZ(joint->axis), {}};
+      in_parent = in_parent * turn;
+      in_body = in_body * turn;
+    }
+    text += joint != nullptr ? ", name: " + names_.getJoint(joint->name) : "";
+    text += body.parent.empty() ? "" : ", parent: " + names_.getBody(body.parent);
+    std::string coordinates;
+    for (const std::string& coordinate : names_.takeCoordinates(body)) {
+      coordinates += (coordinates.empty() ? "" : ", ") + coordinate;
+    }
+    text += coordinates.empty() ? "" : ", coordinates: [" + coordinates + "]";
+    return text + writeFrame("in_parent", in_parent) + writeFrame("in_body", in_body) + "}\n";
+  }
+
+  /// What acts on the coordinate of a joint that turns or slides.
+  void addDrive(const Body& body) {
+    const Joint& joint = *body.joint;
+    const std::string& q = names_.getCoordinate(joint.name);
+    const char* unit = joint.isAngle() ? "N m" : "N";
+    addLoss(joint, q, unit);
+    addStops(joint, q);
+    if (chosen_.armature) {
+      addArmature(joint, q);
+    }
+    if (joint.mimic) {
+      gears_.push_back(
+          fmt::format("{{name: {}_mimic, gear: {{coordinate: {}, driver: {}, ratio: {}, offset: {}}}}}",
+                      names_.getJoint(joint.name), q, names_.getCoordinate(joint.mimic->joint),
+                      toText(joint.mimic->multiplier), toText(joint.mimic->offset)));
+      return;
+    }
+    const std::string signal = names_.take(q + (joint.isAngle() ? "_torque" : "_force"));
+    forces_.push_back(fmt::format("{{coordinate: {}, force: {}}}", q, signal));
+    signals_ +=
+        fmt::format("  {}: {{unit: {}, pulses: [{{amplitude: 0, start: 0, end: 1}}]}}\n", signal, unit);
+  }
+
+  void addLoss(const Joint& joint, const std::string& q, const std::string& unit) {
+    const std::string slope = joint.isAngle() ? "N m s/rad" : "N s/m";
+    const Limits& limits = joint.limits;
+    const double effort = limits.effort.value_or(0.0), speed = limits.velocity.value_or(0.0);
+    if (joint.damping != 0.0 || chosen_.damping) {
+      const std::string damping =
+          !chosen_.damping ? toText(joint.damping)
+          : joint.damping > 0.0
+              ? parameters_.addPositive(q + "_damping", joint.damping, slope)
+              : parameters_.addRange(q + "_damping",
+                                     requireLimit(joint, "damping", speed > 0.0 ? effort / speed : 0.0),
+                                     slope);
+      dampers_.push_back(fmt::format("{{coordinate: {}, damping: {}}}", q, damping));
+    }
+    if (joint.friction != 0.0 || chosen_.friction) {
+      const std::string friction =
+          !chosen_.friction ? toText(joint.friction)
+          : joint.friction > 0.0
+              ? parameters_.addPositive(q + "_friction", joint.friction, unit)
+              : parameters_.addRange(q + "_friction", requireLimit(joint, "friction", effort), unit);
+      friction_.push_back(fmt::format("{{coordinate: {}, model: coulomb, coulomb: {}}}", q, friction));
+    }
+  }
+
+  double requireLimit(const Joint& joint, const char* what, double limit) const {
+    if (!(limit > 0.0)) {
+      failAt(robot_.file, joint.line,
+             fmt::format("joint '{}' has no {}, and no limits (effort, velocity) that say how large it "
+                         "may be: give <dynamics {}=\"...\"/>, or leave {} out of --parameters",
+                         joint.name, what, what, what));
+    }
+    return limit;
+  }
+
+  void addStops(const Joint& joint, const std::string& q) {
+    const Limits& limits = joint.limits;
+    if (!limits.lower) {
+      return;
+    }
+    if (!options_.stops) {
+      robot_.leaveOut(limits.line, "limit lower, upper",
+                      "where the joint ends: --stops makes rigid stops of them");
+      return;
+    }
+    stops_.push_back(fmt::format("{{coordinate: {}, below: {}, restitution: 0}}", q, toText(*limits.lower)));
+    stops_.push_back(fmt::format("{{coordinate: {}, above: {}, restitution: 0}}", q, toText(*limits.upper)));
+  }
+
+  /// A URDF says nothing of rotors: up to as much as the joint's own link has about the joint's axis.
+  void addArmature(const Joint& joint, const std::string& q) {
+    const Body& body =
+        *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& one) { return one.joint == &joint; });
+    const MassProperties mass = calcMassProperties(*body.link->inertial);
+    const Pose joint_frame = body.in_body;
+    const Vector axis = joint_frame.rotation *
+                        algebra::scale(1.0 / std::sqrt(algebra::dot(joint.axis, joint.axis)), joint.axis);
+    const Vector arm = algebra::cross(axis, mass.center - joint_frame.origin);
+    const double own = joint.isAngle()
+                           ? algebra::dot(axis, mass.tensor * axis) + mass.mass * algebra::dot(arm, arm)
+                           : mass.mass;
+    armature_.push_back(
+        fmt::format("{{coordinate: {}, inertia: {}}}", q,
+                    parameters_.addRange(q + "_armature", own, joint.isAngle() ? "kg m2" : "kg")));
+  }
+
+  /// Links that are no bodies.
+  void noteFrames() {
+    for (const Link& link : robot_.links) {
+      if (link.inertial && !link.hasMass()) {
+        const Matrix& t = link.inertial->tensor;
+        const bool has_tensor = !isZero(t.x) || !isZero(t.y) || !isZero(t.z);
+        if (has_tensor) {
+          robot_.leaveOut(link.inertial->line, "<inertia> of a link without mass",
+                          "no body has it: give the link a mass");
+        }
+      }
+      if (!link.hasMass()) {
+        robot_.leaveOut(link.line, "<link> without mass", "a frame of the link that it is fixed to: no body");
+      }
+    }
+  }
+
+  static std::string writeList(const char* key, const std::vector<std::string>& items) {
+    std::string text = items.empty() ? "" : fmt::format("  {}:\n", key);
+    for (const std::string& item : items) {
+      text += "    - " + item + "\n";
+    }
+    return text;
+  }
+
+  std::string writeTail() {
+    std::string outputs, sampled, noise;
+    for (const Body& body : bodies_) {
+      for (const std::string& q : names_.takeCoordinates(body)) {
+        outputs += fmt::format("  {}: {{coordinate: {}}}\n", q, q);
+        sampled += (sampled.empty() ? "" : ", ") + q;
+        noise += (noise.empty() ? "" : ", ") + q + ": unknown";
+      }
+    }
+    if (sampled.empty()) {
+      throw ExperimentError(robot_.file + ": has no joint that moves: try --base free");
+    }
+    return (signals_.empty() ? "" : "excitation:\n" + signals_) + "outputs:\n" + outputs +
+           "simulation: {duration: 1}\nfeatures:\n  - samples: {outputs: [" + sampled +
+           "], start: 0, interval: 0.01, count: 101}\nnoise: {stddev: {" + noise + "}}\n";
+  }
+
+  static constexpr double kThin = 1e-4;  ///< of the widest spread: below it a prior of 20 % says nothing
+
+  Robot& robot_;
+  const ImportOptions& options_;
+  Chosen chosen_;
+  std::vector<Body> bodies_;
+  RobotNames names_;
+  ChosenParameters parameters_;
+  std::string gravity_;
+  std::vector<std::string> forces_, dampers_, friction_, armature_, stops_, gears_;
+  std::string signals_;
+};
+
+}  // namespace
+
+std::string makeExperimentText(Robot& robot, const ImportOptions& options) {
+  return ExperimentWriter(robot, options).write();
+}
+
+std::vector<std::string> describeLeftOut(const Robot& robot) {
+  std::vector<std::string> texts;
+  for (const LeftOut& one : robot.left_out) {
+    std::string lines;
+    for (const int line : one.lines) {
+      lines += (lines.empty() ? "" : ", ") + std::to_string(line);
+    }
+    texts.push_back(robot.file + ":" + lines + ": " + one.what + ": " + one.effect);
+  }
+  return texts;
+}
+
+}  // namespace twinmap::robots
