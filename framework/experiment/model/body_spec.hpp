@@ -94,6 +94,7 @@ struct BodySpec {
   Expression3 center_of_mass;  ///< in the body frame, m
   InertiaSpec inertia;
   JointSpec joint;
+  std::optional<bool> massless{};  ///< carries others, and has no mass of its own
 };
 
 template <class Fields>
@@ -102,6 +103,8 @@ void describe(Fields& f, BodySpec& s) {
   f.optional("center_of_mass", s.center_of_mass, "in the body's frame", Unit{"m"});
   f.optional("inertia", s.inertia, "about the body's own centre of mass");
   f.required("joint", s.joint, "how the body is connected to its parent");
+  f.optional("massless", s.massless,
+             "beside 'mass: 0': a frame between joints, which carries bodies with mass");
 }
 
 }  // namespace twinmap

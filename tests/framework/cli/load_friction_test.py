@@ -21,6 +21,7 @@ initial: {{speeds: {{q: 2}}}}
 outputs: {{q: {{coordinate: q}}, v: {{speed: q}}}}
 simulation: {{duration: 5, relative_tolerance: 1e-10, absolute_tolerance: 1e-12}}
 features: [{{samples: {{outputs: [q, v], start: 0, interval: 0.05, count: 101}}}}]
+noise: {{stddev: {{q: 1, v: 1}}}}
 """
 STICKING = "{coordinate: q, model: coulomb, coulomb: 'level + slope*q'}"
 W = sqrt(SLOPE)

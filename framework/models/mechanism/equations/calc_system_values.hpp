@@ -205,6 +205,7 @@ struct UncheckedNumbers {
   S calc(const Expression& expression, const std::string&, const char*, const char*) const {
     return names.calc(expression);
   }
+  bool knows(const Expression& expression) const { return usesOnly(names, expression); }
 };
 
 /// Evaluates all numbers of a system, with all conditions of its constraints, redundant ones too. `names`:
