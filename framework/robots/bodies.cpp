@@ -9,12 +9,6 @@
 namespace twinmap::robots {
 namespace {
 
-/// Where a joint begins: a link's body (none: the ground), and the link's frame in it.
-struct Place {
-  const Link* body = nullptr;
-  Pose frame;
-};
-
 /// A link that a joint moves, or the root.
 struct Start {
   const Link* link;
@@ -41,7 +35,7 @@ class Assembler {
     }
   }
 
-  std::vector<Body> assemble() {
+  Assembly assemble() {
     checkMoving();
     connect();
     std::for_each(robot_.joints.begin(), robot_.joints.end(),
@@ -53,7 +47,7 @@ class Assembler {
       std::vector<Start> next = addGroup(start);
       open.insert(open.end(), next.rbegin(), next.rend());
     }
-    return std::move(bodies_);
+    return std::move(assembly_);
   }
 
  private:
@@ -172,7 +166,8 @@ class Assembler {
       for (std::size_t k = 0; found != children_.end() && k < found->second.size(); ++k) {
         const Joint& joint = *found->second[k];
         if (!moves(joint)) {
-          group.push_back({links_.at(joint.child), group[i].pose * joint.frame,
+          group.push_back({links_.at(joint.child),
+                           group[i].pose * joint.frame * algebra::invert(joint.in_child),
                            group[i].link->hasMass() ? group[i].link : group[i].holder});
         }
       }
@@ -189,11 +184,14 @@ class Assembler {
     const auto first =
         std::find_if(group.begin(), group.end(), [](const Member& one) { return one.link->hasMass(); });
     if (!on_ground) {
-      requireMass(start, first != group.end());
-      head = first->link;
-      head_pose = first->pose;
-      bodies_.push_back({head, start.place.body != nullptr ? start.place.body->name : "", start.joint,
-                         start.joint == nullptr, false, start.place.frame, algebra::invert(head_pose)});
+      const bool massless = first == group.end();
+      requireMass(start, !massless || isFollowed(group));
+      head = massless ? start.link : first->link;
+      head_pose = massless ? Pose{} : first->pose;
+      const Pose in_link = start.joint != nullptr ? start.joint->in_child : Pose{};
+      assembly_.bodies.push_back({head, start.place.body != nullptr ? start.place.body->name : "",
+                                  start.joint, start.joint == nullptr, false, massless, start.place.frame,
+                                  algebra::invert(head_pose) * in_link});
     }
     std::map<const Link*, Pose> poses;
     for (const Member& member : group) {
@@ -204,29 +202,40 @@ class Assembler {
       const Link* holder = member.holder != nullptr ? member.holder : head;
       const Pose base = holder != nullptr ? poses.at(holder) : Pose{};
       if (member.link->hasMass() && member.link != head) {
-        bodies_.push_back({member.link,
-                           holder != nullptr ? holder->name : "",
-                           nullptr,
-                           false,
-                           on_ground,
-                           algebra::invert(base) * member.pose,
-                           {}});
+        assembly_.bodies.push_back({member.link,
+                                    holder != nullptr ? holder->name : "",
+                                    nullptr,
+                                    false,
+                                    on_ground,
+                                    false,
+                                    algebra::invert(base) * member.pose,
+                                    {}});
       }
       addMoving(member, holder, base, next);
     }
     return next;
   }
 
-  void addMoving(const Member& member, const Link* holder, const Pose& base, std::vector<Start>& next) const {
+  void addMoving(const Member& member, const Link* holder, const Pose& base, std::vector<Start>& next) {
     const auto found = children_.find(member.link);
     const Place place =
         member.link->hasMass() ? Place{member.link, {}} : Place{holder, algebra::invert(base) * member.pose};
+    assembly_.places[member.link->name] = place;
     for (std::size_t k = 0; found != children_.end() && k < found->second.size(); ++k) {
       const Joint& joint = *found->second[k];
       if (moves(joint)) {
         next.push_back({links_.at(joint.child), &joint, {place.body, place.frame * joint.frame}});
       }
     }
+  }
+
+  /// Whether a joint moves something further out.
+  bool isFollowed(const std::vector<Member>& group) const {
+    return std::any_of(group.begin(), group.end(), [this](const Member& member) {
+      const auto found = children_.find(member.link);
+      return found != children_.end() && std::any_of(found->second.begin(), found->second.end(),
+                                                     [this](const Joint* joint) { return moves(*joint); });
+    });
   }
 
   void requireMass(const Start& start, bool has_mass) const {
@@ -249,12 +258,12 @@ class Assembler {
   std::map<std::string, const Joint*> joints_;
   std::map<const Link*, std::vector<const Joint*>> children_;
   std::map<const Link*, const Joint*> into_;
-  std::vector<Body> bodies_;
+  Assembly assembly_;
 };
 
 }  // namespace
 
-std::vector<Body> assembleBodies(const Robot& robot, Base base, const std::vector<std::string>& moving) {
+Assembly assembleBodies(const Robot& robot, Base base, const std::vector<std::string>& moving) {
   return Assembler(robot, base, moving).assemble();
 }
 

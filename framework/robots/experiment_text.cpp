@@ -50,7 +50,8 @@ class ExperimentWriter {
       : robot_(robot),
         options_(options),
         chosen_(readChosen(options.parameters)),
-        bodies_(assembleBodies(robot, options.base, options.joints)),
+        assembly_(assembleBodies(robot, options.base, options.joints)),
+        bodies_(assembly_.bodies),
         names_(robot),
         parameters_(names_, options.relative_stddev),
         gravity_(names_.take("g")) {}
@@ -63,11 +64,14 @@ class ExperimentWriter {
         addDrive(body);
       }
     }
+    addActuators();
+    addClosures();
     noteFrames();
-    return writeHead() + writeParameters() + "system:\n  gravity: [0, 0, -" + gravity_ + "]\n  bodies:\n" +
-           bodies + writeList("force_laws", forces_) + writeList("dampers", dampers_) +
-           writeList("friction", friction_) + writeList("armature", armature_) + writeList("stops", stops_) +
-           writeList("constraints", gears_) + writeTail();
+    return writeHead() + writeParameters() + "system:\n  gravity: " + writeGravity() + "\n  bodies:\n" +
+           bodies + writeList("force_laws", forces_) + writeList("springs", springs_) +
+           writeList("dampers", dampers_) + writeList("friction", friction_) +
+           writeList("armature", armature_) + writeList("stops", stops_) + writeList("constraints", gears_) +
+           writeTail();
   }
 
  private:
@@ -87,10 +91,40 @@ class ExperimentWriter {
     return text;
   }
 
+  /// Along the file's direction; of its size is the parameter. Without gravity, it is of a planet like Earth,
+  /// downwards.
+  std::string writeGravity() const {
+    if (!robot_.gravity) {
+      return "[0, 0, -" + gravity_ + "]";
+    }
+    const Vector direction = algebra::scale(1.0 / getGravity(), *robot_.gravity);
+    const auto write = [&](double share) {
+      return share == 0.0 ? "0" : share == -1.0 ? "-" + gravity_ : toText(share) + "*" + gravity_;
+    };
+    return "[" + write(direction.x) + ", " + write(direction.y) + ", " + write(direction.z) + "]";
+  }
+
+  double getGravity() const {
+    const double size = robot_.gravity ? std::sqrt(algebra::dot(*robot_.gravity, *robot_.gravity)) : 0.0;
+    return size > 0.0 ? size : kGravity;
+  }
+
+  std::string writeGravityParameter() const {
+    if (robot_.gravity && isZero(*robot_.gravity)) {
+      return "";
+    }
+    const double size = getGravity(), reach = kGravityReach * size / kGravity;
+    return fmt::format("  {}: {{bounds: [{}, {}], unit: m/s2, description: {}}}\n", gravity_,
+                       toShortText(size - reach, 6), toShortText(size + reach, 6),
+                       robot_.gravity ? "gravity" : "gravity is not in a URDF");
+  }
+
   std::string writeParameters() const {
-    // of the sea level on Earth: 9.780 to 9.832 m/s2 (WGS 84)
-    std::string text = "parameters:\n  " + gravity_ +
-                       ": {bounds: [9.78, 9.84], unit: m/s2, description: gravity is not in a URDF}\n";
+    std::string text = "parameters:\n" + writeGravityParameter();
+    if (text == "parameters:\n" && parameters_.getAll().empty()) {
+      throw ExperimentError(robot_.file +
+                            ": has no gravity, and nothing else to estimate: give --parameters");
+    }
     for (const RobotParameter& one : parameters_.getAll()) {
       text += fmt::format("  {}: {{bounds: [{}, {}], ", one.name, toText(one.lower), toText(one.upper));
       text += one.has_prior ? fmt::format("prior: {{normal: {{mean: {}, stddev: {}}}}}, ", toText(one.value),
@@ -107,6 +141,9 @@ class ExperimentWriter {
   }
 
   std::string writeMass(const Body& body, const std::string& name) {
+    if (body.massless) {
+      return "      mass: 0\n      massless: true\n";
+    }
     const MassProperties mass = calcMassProperties(*body.link->inertial);
     const std::string impossible = describeImpossible(mass.tensor);
     if (!impossible.empty()) {
@@ -158,8 +195,8 @@ class ExperimentWriter {
       text += body.is_free_base ? "free" : "weld";
     } else if (joint->isSingle()) {
       text += (joint->isAngle() ? "pin" : "slider") + (", axis: " + robots::write(joint->axis));
-    } else if (joint->kind == JointKind::kFloating) {
-      text += "free";
+    } else if (joint->kind != JointKind::kPlanar) {
+      text += joint->kind == JointKind::kBall ? "ball" : "free";
     } else {
       text += "planar";
       const Pose turn{turnZ(joint->axis), {}};
@@ -183,14 +220,19 @@ class ExperimentWriter {
     const char* unit = joint.isAngle() ? "N m" : "N";
     addLoss(joint, q, unit);
     addStops(joint, q);
-    if (chosen_.armature) {
-      addArmature(joint, q);
+    addArmature(joint, q);
+    if (joint.stiffness != 0.0) {
+      springs_.push_back(fmt::format("{{coordinate: {}, stiffness: {}, rest: {}}}", q,
+                                     toText(joint.stiffness), toText(joint.rest)));
     }
     if (joint.mimic) {
       gears_.push_back(
           fmt::format("{{name: {}_mimic, gear: {{coordinate: {}, driver: {}, ratio: {}, offset: {}}}}}",
                       names_.getJoint(joint.name), q, names_.getCoordinate(joint.mimic->joint),
                       toText(joint.mimic->multiplier), toText(joint.mimic->offset)));
+      return;
+    }
+    if (robot_.actuators) {
       return;
     }
     const std::string signal = names_.take(q + (joint.isAngle() ? "_torque" : "_force"));
@@ -247,24 +289,84 @@ class ExperimentWriter {
     stops_.push_back(fmt::format("{{coordinate: {}, above: {}, restitution: 0}}", q, toText(*limits.upper)));
   }
 
-  /// A URDF says nothing of rotors: up to as much as the joint's own link has about the joint's axis.
+  /// Where the file says nothing of the rotor: up to as much as the joint's own link has about its axis.
   void addArmature(const Joint& joint, const std::string& q) {
-    const Body& body =
-        *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& one) { return one.joint == &joint; });
-    const MassProperties mass = calcMassProperties(*body.link->inertial);
-    const Pose joint_frame = body.in_body;
-    const Vector axis = joint_frame.rotation *
-                        algebra::scale(1.0 / std::sqrt(algebra::dot(joint.axis, joint.axis)), joint.axis);
-    const Vector arm = algebra::cross(axis, mass.center - joint_frame.origin);
-    const double own = joint.isAngle()
-                           ? algebra::dot(axis, mass.tensor * axis) + mass.mass * algebra::dot(arm, arm)
-                           : mass.mass;
-    armature_.push_back(
-        fmt::format("{{coordinate: {}, inertia: {}}}", q,
-                    parameters_.addRange(q + "_armature", own, joint.isAngle() ? "kg m2" : "kg")));
+    if (joint.armature == 0.0 && !chosen_.armature) {
+      return;
+    }
+    const char* unit = joint.isAngle() ? "kg m2" : "kg";
+    const std::string inertia = !chosen_.armature ? toText(joint.armature)
+                                : joint.armature > 0.0
+                                    ? parameters_.addPositive(q + "_armature", joint.armature, unit)
+                                    : parameters_.addRange(q + "_armature", calcOwnInertia(joint), unit);
+    armature_.push_back(fmt::format("{{coordinate: {}, inertia: {}}}", q, inertia));
   }
 
-  /// Links that are no bodies.
+  double calcOwnInertia(const Joint& joint) const {
+    const Body& body =
+        *std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& one) { return one.joint == &joint; });
+    if (body.massless) {
+      failAt(robot_.file, joint.line,
+             "joint '" + joint.name + "' moves a link without mass: leave armature out of --parameters");
+    }
+    const MassProperties mass = calcMassProperties(*body.link->inertial);
+    const Vector axis = body.in_body.rotation *
+                        algebra::scale(1.0 / std::sqrt(algebra::dot(joint.axis, joint.axis)), joint.axis);
+    const Vector arm = algebra::cross(axis, mass.center - body.in_body.origin);
+    return joint.isAngle() ? algebra::dot(axis, mass.tensor * axis) + mass.mass * algebra::dot(arm, arm)
+                           : mass.mass;
+  }
+
+  void addActuators() {
+    for (const Actuator& actuator : robot_.actuators.value_or(std::vector<Actuator>{})) {
+      const auto body = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& one) {
+        return one.joint != nullptr && one.joint->name == actuator.joint;
+      });
+      if (body != bodies_.end()) {
+        forces_.push_back(fmt::format("{{coordinate: {}, force: '{}'}}", names_.getCoordinate(actuator.joint),
+                                      writeLaw(actuator, names_.take(actuator.name))));
+      }
+    }
+  }
+
+  std::string writeLaw(const Actuator& actuator, const std::string& signal) {
+    signals_ += fmt::format("  {}: {{pulses: [{{amplitude: 0, start: 0, end: 1}}]}}\n", signal);
+    const auto clamp = [](const std::string& text, const std::optional<std::pair<double, double>>& range) {
+      return range ? fmt::format("clamp({}, {}, {})", text, toText(range->first), toText(range->second))
+                   : text;
+    };
+    const std::string& q = names_.getCoordinate(actuator.joint);
+    std::string law = toText(actuator.gain) + "*" + clamp(signal, actuator.signal_range);
+    const double by_state = actuator.gear;
+    for (const auto& [factor, what] :
+         {std::pair{actuator.bias[0], std::string()}, std::pair{by_state * actuator.bias[1], "*" + q},
+          std::pair{by_state * actuator.bias[2], "*" + q + "_dot"}}) {
+      law += factor != 0.0 ? " + (" + toText(factor) + ")" + what : "";
+    }
+    return toText(actuator.gear) + "*" + clamp("(" + law + ")", actuator.force_range);
+  }
+
+  void addClosures() {
+    for (const Closure& closure : robot_.closures) {
+      const Place &from = assembly_.places.at(closure.link), &to = assembly_.places.at(closure.other);
+      const auto write = [&](const Place& place, const Pose& frame) {
+        const Pose in_body = place.frame * frame;
+        const std::string body = place.body != nullptr ? names_.getBody(place.body->name) : "ground";
+        return "{body: " + body +
+               (closure.is_weld ? writeFrame("frame", in_body)
+                                : ", point: " + robots::write(in_body.origin)) +
+               "}";
+      };
+      gears_.push_back(fmt::format("{{{}: {{from: {}, to: {}}}}}", closure.is_weld ? "weld" : "coincident",
+                                   write(from, closure.frame), write(to, closure.other_frame)));
+    }
+  }
+
+  bool isBody(const Link& link) const {
+    return std::any_of(bodies_.begin(), bodies_.end(), [&](const Body& body) { return body.link == &link; });
+  }
+
+  /// Links that are not bodies.
   void noteFrames() {
     for (const Link& link : robot_.links) {
       if (link.inertial && !link.hasMass()) {
@@ -275,7 +377,7 @@ class ExperimentWriter {
                           "no body has it: give the link a mass");
         }
       }
-      if (!link.hasMass()) {
+      if (!link.hasMass() && !robot_.gravity && !isBody(link)) {
         robot_.leaveOut(link.line, "<link> without mass", "a frame of the link that it is fixed to: no body");
       }
     }
@@ -306,16 +408,19 @@ class ExperimentWriter {
            "], start: 0, interval: 0.01, count: 101}\nnoise: {stddev: {" + noise + "}}\n";
   }
 
+  static constexpr double kGravity = 9.81;       ///< m/s2
+  static constexpr double kGravityReach = 0.03;  ///< m/s2; at sea level it is 9.780 to 9.832 (WGS 84)
   static constexpr double kThin = 1e-4;  ///< of the widest spread: below it a prior of 20 % says nothing
 
   Robot& robot_;
   const ImportOptions& options_;
   Chosen chosen_;
-  std::vector<Body> bodies_;
+  Assembly assembly_;
+  const std::vector<Body>& bodies_;
   RobotNames names_;
   ChosenParameters parameters_;
   std::string gravity_;
-  std::vector<std::string> forces_, dampers_, friction_, armature_, stops_, gears_;
+  std::vector<std::string> forces_, springs_, dampers_, friction_, armature_, stops_, gears_;
   std::string signals_;
 };
 

@@ -68,6 +68,8 @@ const std::vector<std::string>& RobotNames::takeCoordinates(const Body& body) {
     names.push_back(getCoordinate(joint->name));
   } else if (body.is_free_base || (joint != nullptr && joint->kind == JointKind::kFloating)) {
     add({"_rx", "_ry", "_rz", "_x", "_y", "_z"});
+  } else if (joint != nullptr && joint->kind == JointKind::kBall) {
+    add({"_rx", "_ry", "_rz"});
   } else if (joint != nullptr) {
     add({"_angle", "_x", "_y"});
   }

@@ -12,7 +12,8 @@ namespace {
 
 class Placing {
  public:
-  Placing(const Robot& robot, const std::map<std::string, double>& values) : names_(robot), values_(values) {
+  Placing(const Robot& robot, const std::map<std::string, double>& values)
+      : robot_(robot), names_(robot), values_(values) {
     placeNowhere(names_.take("g"));
     for (const Link& link : robot.links) {
       if (link.hasMass()) {
@@ -92,9 +93,15 @@ class Placing {
       placed_.friction[joint.name] = friction;
       exist(friction >= 0.0);
     }
-    placeNowhere(names_.take(name + "_armature"));
+    if (!robot_.actuators) {  // a URDF has no place for it
+      placeNowhere(names_.take(name + "_armature"));
+    } else if (double armature = joint.armature; read(name + "_armature", armature)) {
+      placed_.armature[joint.name] = armature;
+      exist(armature >= 0.0);
+    }
   }
 
+  const Robot& robot_;
   RobotNames names_;
   const std::map<std::string, double>& values_;
   std::set<std::string> known_;

@@ -11,7 +11,7 @@ namespace twinmap::robots {
 /// New numbers of a robot, by the names of its links and joints.
 struct RobotValues {
   std::map<std::string, MassProperties> links;
-  std::map<std::string, double> damping, friction;
+  std::map<std::string, double> damping, friction, armature;
   std::vector<std::string> without_place;  ///< parameters that the robot's file has no number for
   bool exist = true;                       ///< masses and spreads are above 0, losses not below
 };

@@ -17,6 +17,7 @@ ALLOWED = {
     "models/external": {"base", "experiment", "simulation"},
     "models": {"experiment", "simulation", "models/mechanism", "models/fmu", "models/external"},
     "data": {"base", "experiment", "simulation"},
+    "view": {"base", "experiment", "simulation", "models", "models/mechanism"},
     "estimation": {"base", "experiment", "simulation", "data", "kernels"},
     "analysis": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
     "store": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
@@ -68,6 +69,7 @@ ALLOWED = {
         "optimal_design",
         "export",
         "robots",
+        "view",
     },
     "python": {"base", "experiment", "simulation", "models", "models/fmu", "data", "study", "inference", "diagnosis"},
 }

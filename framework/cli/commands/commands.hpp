@@ -177,7 +177,7 @@ struct RobotExportArguments {
   std::string measurement;         ///< "": `estimate` is JSON
   std::optional<double> start;     ///< as of infer
   std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
-  std::string urdf;                ///< the robot's file; "": no such export
+  std::string robot;               ///< its file, URDF or MJCF; "": no such export
   std::string out;                 ///< file to write; a JSON file beside it
   bool anyway = false;             ///< also of an estimate that is not ok
   int draws = 0;                   ///< files with numbers drawn from the estimate
@@ -191,6 +191,15 @@ struct ImportArguments {
   std::vector<std::string> joints;      ///< that move; empty: all
   bool stops = false;                   ///< limits of joints become stops
   bool strict = false;                  ///< what is not carried over is an error
+};
+
+struct ViewArguments {
+  ExperimentArguments experiment;  ///< or a run, without overrides
+  std::string measurement;         ///< its updated model moves too; "": none
+  std::optional<double> start;     ///< as of infer
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::string out;                 ///< page; "": NAME.html, or none where a picture is asked for
+  std::string svg;                 ///< picture; "": none
 };
 
 struct ReplayArguments {
@@ -310,6 +319,9 @@ void select(const SelectArguments& arguments);
 /// Prints an experiment file that describes a robot, and what it leaves out on stderr. Throws ExperimentError
 /// for a file that cannot be imported, with `strict` also where anything is left out.
 void importRobot(const ImportArguments& arguments);
+
+/// Writes a page on which the mechanism moves, or a picture of it.
+void view(const ViewArguments& arguments);
 
 /// Writes a robot's file with an estimate's numbers, all else as it is. Throws ExperimentError for an
 /// estimate that is not ok, and parameters that fit nothing in the file.

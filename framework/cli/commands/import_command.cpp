@@ -1,15 +1,22 @@
 #include <iostream>
+#include <string>
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/robots/experiment_text.hpp"
+#include "framework/robots/mjcf/read_mjcf.hpp"
 #include "framework/robots/urdf/read_urdf.hpp"
 
 namespace twinmap::cli {
 
 void importRobot(const ImportArguments& arguments) {
-  robots::Robot robot = robots::readUrdf(robots::XmlFile(arguments.file));
+  const robots::XmlFile file(arguments.file);
+  const bool is_mjcf = std::string(file.getRoot().name()) == "mujoco";
+  robots::Robot robot = is_mjcf ? robots::readMjcf(file) : robots::readUrdf(file);
   robots::ImportOptions options;
+  if (is_mjcf && arguments.base == "free") {
+    throw ExperimentError("--base is of a URDF: an MJCF says itself which bodies are free (freejoint)");
+  }
   options.base = arguments.base == "free" ? robots::Base::kFree : robots::Base::kFixed;
   options.parameters = arguments.parameters;
   options.joints = arguments.joints;

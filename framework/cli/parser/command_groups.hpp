@@ -19,7 +19,7 @@ void addExperimentCommands(CLI::App& app, const Invocation& invocation);
 /// infer, replay, export, noise, look.
 void addMapCommands(CLI::App& app, const Invocation& invocation);
 
-/// import.
+/// import, view.
 void addRobotCommands(CLI::App& app);
 
 /// diagnose, validate, select.

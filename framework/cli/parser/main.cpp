@@ -41,7 +41,7 @@ std::string joinArguments(int count, char** arguments) {
 void groupCommands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> groups[] = {
       {"From a model to an estimate",
-       {"import", "check", "simulate", "run", "infer", "diagnose", "validate", "select", "replay"}},
+       {"import", "view", "check", "simulate", "run", "infer", "diagnose", "validate", "select", "replay"}},
       {"Improve the experiment", {"look", "noise", "design"}},
       {"Look after runs", {"plan", "status", "report", "compare", "verify", "store"}},
       {"Take the estimator elsewhere", {"export"}},

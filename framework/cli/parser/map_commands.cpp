@@ -153,12 +153,13 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
 }
 
 void addRobotExport(CLI::App& command, RobotExportArguments& arguments) {
-  CLI::Option* urdf =
-      command.add_option("--urdf", arguments.urdf,
-                         "URDF that the experiment was imported from: written with what was estimated");
+  CLI::Option* urdf = command.add_option(
+      "--urdf,--mjcf", arguments.robot,
+      "URDF or MJCF that the experiment was imported from: written with what was estimated");
   urdf->type_name("FILE");
   command
-      .add_option("MEASUREMENT", arguments.measurement, "Of --urdf: file to estimate from, as infer takes it")
+      .add_option("MEASUREMENT", arguments.measurement,
+                  "Of --urdf and --mjcf: file to estimate from, as infer takes it")
       ->option_text(" ");
   command.add_option("--start", arguments.start, "Time in the file (s) at which the model's time is 0")
       ->type_name("S")
@@ -166,7 +167,8 @@ void addRobotExport(CLI::App& command, RobotExportArguments& arguments) {
   command.add_option("--set", arguments.known, "Value of a known input of the set-up; for each of them")
       ->type_name("NAME=VALUE")
       ->needs(urdf);
-  command.add_option("--out", arguments.out, "File for the URDF; values and sds go beside it, as JSON")
+  command
+      .add_option("--out", arguments.out, "File for the URDF or MJCF; values and sds go beside it, as JSON")
       ->type_name("FILE")
       ->needs(urdf);
   command.add_flag("--anyway", arguments.anyway, "Also of an estimate that is not ok")->needs(urdf);
@@ -187,10 +189,10 @@ void addExport(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
   const auto robot = std::make_shared<RobotExportArguments>();
   CLI::App* command = app.add_subcommand(
-      "export", "Write the trained estimator as C99, FMU or JSON, or what was estimated as URDF");
+      "export", "Write the trained estimator as C99, FMU or JSON, or what was estimated as URDF or MJCF");
   command
       ->add_option("RUN", arguments->run,
-                   "Folder of a finished run; for --urdf also an experiment file, or JSON of infer")
+                   "Folder of a finished run; for a robot also an experiment file, or JSON of infer")
       ->required()
       ->option_text(" ");
   addRobotExport(*command, *robot);
@@ -213,7 +215,7 @@ void addExport(CLI::App& app) {
       ->type_name("NAME");
   command->callback([arguments, robot] {
     robot->estimate = arguments->run;
-    robot->urdf.empty() ? exportMap(*arguments) : exportRobot(*robot);
+    robot->robot.empty() ? exportMap(*arguments) : exportRobot(*robot);
   });
 }
 

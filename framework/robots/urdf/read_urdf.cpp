@@ -48,9 +48,6 @@ class UrdfReader {
  private:
   void requireUrdf(const pugi::xml_node& root) const {
     const std::string name = root.name();
-    if (name == "mujoco") {
-      file_.fail(root, "is an MJCF file: twinmap reads URDF");
-    }
     if (name != "robot") {
       file_.fail(root, "is not a URDF: its first element must be <robot>");
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "framework/robots/urdf/xml_file.hpp"
+#include "framework/robots/xml/xml_file.hpp"
 
 namespace twinmap::robots {
 

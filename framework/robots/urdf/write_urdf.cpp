@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/robots/urdf/xml_edits.hpp"
+#include "framework/robots/xml/xml_edits.hpp"
 
 namespace twinmap::robots {
 namespace {

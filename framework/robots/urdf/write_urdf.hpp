@@ -1,7 +1,7 @@
 #pragma once
 
 #include "framework/robots/robot_values.hpp"
-#include "framework/robots/urdf/xml_file.hpp"
+#include "framework/robots/xml/xml_file.hpp"
 
 namespace twinmap::robots {
 

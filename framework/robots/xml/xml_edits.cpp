@@ -1,6 +1,7 @@
-#include "framework/robots/urdf/xml_edits.hpp"
+#include "framework/robots/xml/xml_edits.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "framework/base/text/number_text.hpp"
 
@@ -36,6 +37,19 @@ void XmlEdits::setNumbers(const pugi::xml_node& node, const char* attribute, con
   }
   const std::size_t name_end = file_.getText().find_first_of(std::string(kSpaces) + "/>", tag.begin);
   edits_.push_back({name_end, 0, " " + std::string(attribute) + "=\"" + join(numbers) + "\""});
+}
+
+void XmlEdits::removeAttribute(const pugi::xml_node& node, const char* attribute) {
+  Span value{};
+  if (!findValue(findStartTag(node), attribute, value)) {
+    return;
+  }
+  const std::string& text = file_.getText();
+  const std::size_t equals = text.rfind('=', value.begin);
+  const std::size_t name_end = text.find_last_not_of(kSpaces, equals - 1);
+  const std::size_t before = text.find_last_of(kSpaces, name_end);
+  const std::size_t begin = text.find_last_not_of(kSpaces, before) + 1;
+  edits_.push_back({begin, value.end + 1 - begin, ""});
 }
 
 void XmlEdits::setWords(const Span& value, const std::vector<double>& old,
@@ -100,8 +114,9 @@ bool XmlEdits::findValue(const Span& tag, const std::string& attribute, Span& va
 
 std::string XmlEdits::apply() const {
   std::vector<Edit> edits = edits_;
-  std::stable_sort(edits.begin(), edits.end(),
-                   [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
+  std::stable_sort(edits.begin(), edits.end(), [](const Edit& a, const Edit& b) {
+    return std::pair(a.begin, a.length) < std::pair(b.begin, b.length);
+  });
   const std::string& text = file_.getText();
   std::string changed;
   std::size_t done = 0;

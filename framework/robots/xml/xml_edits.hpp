@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/robots/urdf/xml_file.hpp"
+#include "framework/robots/xml/xml_file.hpp"
 
 namespace twinmap::robots {
 
@@ -16,6 +16,9 @@ class XmlEdits {
   /// is added where a number is not 0. `node`: an element of the file.
   void setNumbers(const pugi::xml_node& node, const char* attribute, const std::vector<double>& old,
                   const std::vector<double>& numbers);
+
+  /// Takes an attribute out, if it is there, with the space before it.
+  void removeAttribute(const pugi::xml_node& node, const char* attribute);
 
   /// Adds an element without children as the first child of another.
   void addElement(const pugi::xml_node& parent, const std::string& text);

@@ -1,4 +1,4 @@
-#include "framework/robots/urdf/xml_file.hpp"
+#include "framework/robots/xml/xml_file.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,5 +1,6 @@
-"""twinmap import: robots' files as experiments, against Pinocchio (robots/make_robots_golden.py)."""
+"""twinmap import: robots' files as experiments, against Pinocchio and MuJoCo (robots/make_*_golden.py)."""
 import json
+import os
 import re
 import tempfile
 import unittest
@@ -11,6 +12,7 @@ from support import call
 ROBOTS = Path(__file__).resolve().parent / "robots"
 GOLDEN = json.loads((ROBOTS / "robots_golden.json").read_text())
 ARM = (ROBOTS / "arm.urdf").read_text()
+MJCF_GOLDEN = json.loads((ROBOTS / "mjcf_golden.json").read_text())
 
 
 def import_robot(file, *options):
@@ -171,11 +173,10 @@ class Import(unittest.TestCase):
             self.assertAlmostEqual(-moment[i][j], value, delta=1e-15)
 
     def test_wrong_files_are_refused_with_line_and_remedy(self):
-        hand = ARM[ARM.index('<link name="hand">') :]
-        hand = hand[: hand.index("</inertial>") + len("</inertial>")]
+        finger = ARM[ARM.index('<link name="left_finger">') :]
+        finger = finger[: finger.index("</inertial>") + len("</inertial>")]
         cases = (
-            (ARM.replace(hand, '<link name="hand">').replace("<mass value=\"0.05\"/>", "<mass value=\"0\"/>"),
-             '<link name="wrist_frame"/>', "give it <inertial>"),
+            (ARM.replace(finger, '<link name="left_finger">'), '<link name="left_finger">', "give it <inertial>"),
             (ARM.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/><mimic joint="right"/>'),
              '<mimic joint="right"/>', "leave one <mimic> out"),
             (ARM.replace('<transmission name="drive">', '<xacro:drive/><transmission name="drive">'),
@@ -206,6 +207,85 @@ class Import(unittest.TestCase):
         self.assertTrue(experiment["system"]["bodies"]["slide"]["inertia"]["unchecked"])
         (self.folder / "robot.yaml").write_text(result.stdout)
         self.assertEqual(call("simulate", self.folder / "robot.yaml").returncode, 0)
+
+    def test_a_link_without_mass_between_joints_is_a_frame_that_carries_others(self):
+        chain = ROBOTS.joinpath("walker.urdf").read_text()
+        start = chain.index("<inertial>", chain.index('name="hip"'))
+        chain = chain[:start] + chain[chain.index("</inertial>", start) + len("</inertial>") :]
+        file = self.folder / "robot.urdf"
+        file.write_text(chain)
+        experiment, _ = import_robot(file)
+        hip = experiment["system"]["bodies"]["hip"]
+        self.assertEqual((hip["mass"], hip["massless"]), (0, True))
+        (self.folder / "robot.yaml").write_text(call("import", file).stdout)
+        self.assertEqual(call("check", self.folder / "robot.yaml").returncode, 0)  # compared with Simbody
+
+
+class Mjcf(unittest.TestCase):
+    """What MuJoCo compiles is in the golden: in place of Python stands a program that prints it."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def import_with(self, answer, *options, file=ROBOTS / "finger.xml"):
+        (self.folder / "answer.json").write_text(json.dumps(answer) + "\n")
+        python = self.folder / "python3"
+        python.write_text(f"#!/bin/sh\nread request\ncat {self.folder}/answer.json\n")
+        python.chmod(0o755)
+        return call("import", file, *options, env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})
+
+    def test_accelerations_are_those_of_mujoco(self):
+        for state in MJCF_GOLDEN["states"]:
+            result = self.import_with(MJCF_GOLDEN["compiled"])
+            self.assertEqual(result.returncode, 0, result.stderr)
+            experiment = yaml.safe_load(result.stdout)
+            system = experiment["system"]
+            del system["friction"]
+            base = system["bodies"]["ball"]["joint"]["coordinates"]
+            experiment["initial"] = {
+                "coordinates": {**state["coordinates"], **dict(zip(base, state["base"]))},
+                "speeds": {**state["speeds"], **dict(zip(base, state["base_rates"]))},
+            }
+            for name, value in state["controls"].items():
+                experiment["excitation"][name]["pulses"][0]["amplitude"] = value
+            units = {"rail": "m/s2", "swivel": "rad/s2", "bend": "rad/s2"}
+            outputs = {name: {"expression": f"{name}_ddot", "unit": unit} for name, unit in units.items()}
+            for axis in range(3):
+                direction = [int(axis == i) for i in range(3)]
+                outputs[f"force_{axis}"] = {"specific_force": {"body": "ball", "direction": direction}}
+            experiment["outputs"] = outputs
+            experiment["features"] = [{"samples": {"outputs": list(outputs), "start": 0, "interval": 0.01, "count": 1}}]
+            experiment["noise"] = {"stddev": dict.fromkeys(outputs, 1)}
+            (self.folder / "robot.yaml").write_text(yaml.safe_dump(experiment, sort_keys=False))
+            simulated = call("simulate", self.folder / "robot.yaml")
+            self.assertEqual(simulated.returncode, 0, simulated.stderr)
+            names, values = simulated.stdout.splitlines()[:2]
+            found = dict(zip(names.split(","), map(float, values.split(","))))
+            expected = {**state["accelerations"], **{f"force_{i}": x for i, x in enumerate(state["specific_force"])}}
+            largest = max(map(abs, expected.values()))
+            for key, value in expected.items():
+                self.assertAlmostEqual(found[key], value, delta=1e-9 * largest, msg=key)
+
+    def test_what_is_left_out_is_named(self):
+        result = self.import_with(MJCF_GOLDEN["compiled"], "--parameters", "armature,damping", "--joints", "rail,bend")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for what in ("10, 17, 19, 25: <geom>", "32: <sensor>", "16: solref of frictionloss"):
+            self.assertIn(f"finger.xml:{what}", result.stderr)
+        parameters = yaml.safe_load(result.stdout)["parameters"]
+        self.assertEqual(parameters["bend_armature"]["prior"]["normal"], {"mean": 0.01, "stddev": 0.002})
+
+    def test_messages_name_what_is_missing(self):
+        for answer, message in (
+            ({"missing": True}, "pip install mujoco"),
+            ({"error": "Error: unknown element 'bod'"}, "MuJoCo does not compile it: Error: unknown element 'bod'"),
+            ({"bodies": []}, "what MuJoCo made of it cannot be read"),
+        ):
+            result = self.import_with(answer)
+            self.assertEqual((result.returncode, result.stdout), (2, ""))
+            self.assertIn(message, result.stderr)
+        self.assertIn("freejoint", self.import_with(MJCF_GOLDEN["compiled"], "--base", "free").stderr)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 import csv
 import difflib
 import json
+import os
 import re
 import tempfile
 import unittest
@@ -144,6 +145,36 @@ class RobotExport(unittest.TestCase):
         self.assertEqual(again.returncode, 0)
         name = rows[7]["file"]
         self.assertEqual((self.folder / "draws" / name).read_bytes(), (self.folder / "again" / name).read_bytes())
+
+    def test_numbers_of_an_mjcf_are_put_in_or_added_where_classes_gave_them(self):
+        golden = json.loads((ROBOTS / "mjcf_golden.json").read_text())
+        (self.folder / "answer.json").write_text(json.dumps(golden["compiled"]) + "\n")
+        python = self.folder / "python3"
+        python.write_text(f"#!/bin/sh\nread request\ncat {self.folder}/answer.json\n")
+        python.chmod(0o755)
+        values = {"cart_mass": 1.75, "link_lx": 0.06, "bend_damping": 0.3, "rail_armature": 0.02, "bend_friction": 0.15}
+        estimate = self.write_estimate(values)
+        source = (ROBOTS / "finger.xml").read_text()
+        result = call("export", estimate, "--mjcf", ROBOTS / "finger.xml", "--out", self.folder / "new.xml",
+                      env={**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}"})  # fmt: skip
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = (self.folder / "new.xml").read_text().splitlines()
+        self.assertEqual([line for line in lines if "<inertial" not in line and "<joint" not in line],
+                         [line for line in source.splitlines() if "<inertial" not in line and "<joint" not in line])  # fmt: skip
+        text = "\n".join(lines)
+        self.assertIn('<joint armature="0.02" name="rail" type="slide"', text)
+        self.assertIn(
+            '<joint damping="0.3" name="bend" class="soft" axis="0 1 0" pos="0 0.01 0" frictionloss="0.15"/>', text
+        )
+        bodies = {body.get("name"): body for body in ET.fromstring(text).iter("body")}
+        cart = bodies["cart"].find("inertial")
+        self.assertEqual(cart.get("mass"), "1.75")
+        self.assertEqual(cart.get("pos"), "0.01 0.02 0.03")
+        self.assertIsNone(cart.get("quat"))
+        self.assertIsNone(cart.get("diaginertia"))
+        tensor = [float(x) for x in cart.get("fullinertia").split()]
+        self.assertAlmostEqual(sum(tensor[:3]), 0.015 * 1.75 / 1.5, delta=1e-15)  # the spread is the file's
+        self.assertEqual(bodies["link"].find("inertial").get("mass"), "0.4")
 
 
 if __name__ == "__main__":

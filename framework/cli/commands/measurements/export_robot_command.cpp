@@ -6,13 +6,9 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
-#include "framework/cli/commands/measurements/infer_options.hpp"
-#include "framework/data/measurement/files/read_table.hpp"
-#include "framework/diagnosis/missing_term.hpp"
-#include "framework/inference/known_value.hpp"
-#include "framework/inference/measurement/inference_source.hpp"
-#include "framework/inference/text/inference_text.hpp"
-#include "framework/robots/estimate_file.hpp"
+#include "framework/cli/commands/measurements/infer_estimate.hpp"
+#include "framework/robots/mjcf/read_mjcf.hpp"
+#include "framework/robots/mjcf/write_mjcf.hpp"
 #include "framework/robots/urdf/read_urdf.hpp"
 #include "framework/robots/urdf/write_urdf.hpp"
 
@@ -22,20 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 using robots::RobotEstimate;
 
-/// As infer does, the test of the model included.
-RobotEstimate inferEstimate(const RobotExportArguments& arguments) {
-  const InferenceSource source(arguments.estimate);
-  const ModelSpec& model = source.getExperiment().model;
-  const std::unique_ptr<MeasurementInference> session =
-      source.makeSession(makeSessionOptions(InferArguments{}));
-  const Eigen::VectorXd known = collectKnown(model.inputs, parseKnownValues(arguments.known));
-  const Table table =
-      readTable(arguments.measurement, source.getReader().listColumns(), session->getMissingCells());
-  InferredMeasurement inferred = session->infer(table, arguments.start, known);
-  testModel(source.getReader(), table, arguments.start, known, inferred);
-  return robots::readEstimate(
-      makeInferenceJson(inferred, model.parameters, source.getReader().getExtractor().getInfos()),
-      arguments.measurement);
+bool isMjcf(const robots::XmlFile& file) {
+  return std::string(file.getRoot().name()) == "mujoco";
+}
+
+std::string writeRobot(const robots::XmlFile& file, const robots::Robot& robot,
+                       const robots::RobotValues& values) {
+  return isMjcf(file) ? robots::writeMjcf(file, robot, values) : robots::writeUrdf(file, robot, values);
 }
 
 /// Draws until so many robots that exist are written: those beyond a physical limit are drawn again.
@@ -56,8 +45,8 @@ void writeDraws(const robots::XmlFile& file, const robots::Robot& robot, const R
     if (!placed.exist) {
       continue;
     }
-    const std::string name = fmt::format("{:05}.urdf", ++written);
-    writeTextFile(folder / name, robots::writeUrdf(file, robot, placed));
+    const std::string name = fmt::format("{:05}{}", ++written, isMjcf(file) ? ".xml" : ".urdf");
+    writeTextFile(folder / name, writeRobot(file, robot, placed));
     csv += "\n" + name;
     for (const std::string& parameter : estimate.names) {
       csv += "," + toText(values.at(parameter));
@@ -79,11 +68,12 @@ void exportRobot(const RobotExportArguments& arguments) {
   if (arguments.out.empty() && arguments.draws == 0) {
     throw ExperimentError("export --urdf: give --out FILE or --draws N DIR");
   }
-  const robots::XmlFile file(arguments.urdf);
-  const robots::Robot robot = robots::readUrdf(file);
-  const RobotEstimate estimate = arguments.measurement.empty()
-                                     ? robots::readEstimate(readBytes(arguments.estimate), arguments.estimate)
-                                     : inferEstimate(arguments);
+  const robots::XmlFile file(arguments.robot);
+  const robots::Robot robot = isMjcf(file) ? robots::readMjcf(file) : robots::readUrdf(file);
+  const RobotEstimate estimate =
+      arguments.measurement.empty()
+          ? robots::readEstimate(readBytes(arguments.estimate), arguments.estimate)
+          : inferEstimate(arguments.estimate, arguments.measurement, arguments.start, arguments.known);
   if (!arguments.anyway) {
     robots::requireOk(estimate);
   }
@@ -95,10 +85,10 @@ void exportRobot(const RobotExportArguments& arguments) {
   }
   if (!arguments.out.empty()) {
     const fs::path json = fs::path(arguments.out).replace_extension(".json");
-    writeTextFile(arguments.out, robots::writeUrdf(file, robot, values));
+    writeTextFile(arguments.out, writeRobot(file, robot, values));
     writeTextFile(json, robots::makeUpdateJson(estimate, values.without_place));
     std::cout << fmt::format("{}: {} with what was estimated; values and sds: {}\n", arguments.out,
-                             arguments.urdf, json.string());
+                             arguments.robot, json.string());
   }
   if (arguments.draws > 0) {
     writeDraws(file, robot, estimate, arguments);
