@@ -1,6 +1,6 @@
 #include "framework/robots/experiment_text.hpp"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,16 @@
 namespace twinmap::robots {
 namespace {
 
+/// With a point in front of an exponent: to YAML 1.1, 1e-06 is a text. -0 as 0.
+std::string writeNumber(double value) {
+  std::string text = toText(value + 0.0);
+  const std::size_t exponent = text.find('e');
+  return exponent == std::string::npos || text.find('.') != std::string::npos ? text
+                                                                              : text.insert(exponent, ".0");
+}
+
 std::string write(const Vector& v) {
-  const auto text = [](double value) { return toText(value + 0.0); };  // -0 as 0
-  return "[" + text(v.x) + ", " + text(v.y) + ", " + text(v.z) + "]";
+  return "[" + writeNumber(v.x) + ", " + writeNumber(v.y) + ", " + writeNumber(v.z) + "]";
 }
 
 bool isZero(const Vector& v) {
@@ -54,7 +61,8 @@ class ExperimentWriter {
         bodies_(assembly_.bodies),
         names_(robot),
         parameters_(names_, options.relative_stddev),
-        gravity_(names_.take("g")) {}
+        gravity_(names_.take("g")),
+        recording_(options.recording) {}
 
   std::string write() {
     std::string bodies;
@@ -67,11 +75,12 @@ class ExperimentWriter {
     addActuators();
     addClosures();
     noteFrames();
-    return writeHead() + writeParameters() + "system:\n  gravity: " + writeGravity() + "\n  bodies:\n" +
-           bodies + writeList("force_laws", forces_) + writeList("springs", springs_) +
-           writeList("dampers", dampers_) + writeList("friction", friction_) +
-           writeList("armature", armature_) + writeList("stops", stops_) + writeList("constraints", gears_) +
-           writeTail();
+    const std::string experiment =
+        writeParameters() + "system:\n  gravity: " + writeGravity() + "\n  bodies:\n" + bodies +
+        writeList("force_laws", forces_) + writeList("springs", springs_) + writeList("dampers", dampers_) +
+        writeList("friction", friction_) + writeList("armature", armature_) + writeList("stops", stops_) +
+        writeList("constraints", gears_) + writeTail();
+    return writeHead() + experiment;
   }
 
  private:
@@ -99,7 +108,7 @@ class ExperimentWriter {
     }
     const Vector direction = algebra::scale(1.0 / getGravity(), *robot_.gravity);
     const auto write = [&](double share) {
-      return share == 0.0 ? "0" : share == -1.0 ? "-" + gravity_ : toText(share) + "*" + gravity_;
+      return share == 0.0 ? "0" : share == -1.0 ? "-" + gravity_ : writeNumber(share) + "*" + gravity_;
     };
     return "[" + write(direction.x) + ", " + write(direction.y) + ", " + write(direction.z) + "]";
   }
@@ -126,9 +135,10 @@ class ExperimentWriter {
                             ": has no gravity, and nothing else to estimate: give --parameters");
     }
     for (const RobotParameter& one : parameters_.getAll()) {
-      text += fmt::format("  {}: {{bounds: [{}, {}], ", one.name, toText(one.lower), toText(one.upper));
-      text += one.has_prior ? fmt::format("prior: {{normal: {{mean: {}, stddev: {}}}}}, ", toText(one.value),
-                                          toText(one.stddev))
+      text +=
+          fmt::format("  {}: {{bounds: [{}, {}], ", one.name, writeNumber(one.lower), writeNumber(one.upper));
+      text += one.has_prior ? fmt::format("prior: {{normal: {{mean: {}, stddev: {}}}}}, ",
+                                          writeNumber(one.value), writeNumber(one.stddev))
                             : "";
       text += "unit: " + one.unit + "}\n";
     }
@@ -165,7 +175,8 @@ class ExperimentWriter {
     const Matrix& tensor = mass.tensor;
     return fmt::format(
         "      mass: {}\n      center_of_mass: {}\n      inertia: {{moments: {}, products: {}{}}}\n",
-        toText(mass.mass), robots::write(mass.center), robots::write({tensor.x.x, tensor.y.y, tensor.z.z}),
+        writeNumber(mass.mass), robots::write(mass.center),
+        robots::write({tensor.x.x, tensor.y.y, tensor.z.z}),
         robots::write({tensor.y.x, tensor.z.x, tensor.z.y}), impossible.empty() ? "" : ", unchecked: true");
   }
 
@@ -223,13 +234,13 @@ class ExperimentWriter {
     addArmature(joint, q);
     if (joint.stiffness != 0.0) {
       springs_.push_back(fmt::format("{{coordinate: {}, stiffness: {}, rest: {}}}", q,
-                                     toText(joint.stiffness), toText(joint.rest)));
+                                     writeNumber(joint.stiffness), writeNumber(joint.rest)));
     }
     if (joint.mimic) {
       gears_.push_back(
           fmt::format("{{name: {}_mimic, gear: {{coordinate: {}, driver: {}, ratio: {}, offset: {}}}}}",
                       names_.getJoint(joint.name), q, names_.getCoordinate(joint.mimic->joint),
-                      toText(joint.mimic->multiplier), toText(joint.mimic->offset)));
+                      writeNumber(joint.mimic->multiplier), writeNumber(joint.mimic->offset)));
       return;
     }
     if (robot_.actuators) {
@@ -237,8 +248,7 @@ class ExperimentWriter {
     }
     const std::string signal = names_.take(q + (joint.isAngle() ? "_torque" : "_force"));
     forces_.push_back(fmt::format("{{coordinate: {}, force: {}}}", q, signal));
-    signals_ +=
-        fmt::format("  {}: {{unit: {}, pulses: [{{amplitude: 0, start: 0, end: 1}}]}}\n", signal, unit);
+    addSignal(signal, fmt::format("unit: {}, ", unit));
   }
 
   void addLoss(const Joint& joint, const std::string& q, const std::string& unit) {
@@ -247,7 +257,7 @@ class ExperimentWriter {
     const double effort = limits.effort.value_or(0.0), speed = limits.velocity.value_or(0.0);
     if (joint.damping != 0.0 || chosen_.damping) {
       const std::string damping =
-          !chosen_.damping ? toText(joint.damping)
+          !chosen_.damping ? writeNumber(joint.damping)
           : joint.damping > 0.0
               ? parameters_.addPositive(q + "_damping", joint.damping, slope)
               : parameters_.addRange(q + "_damping",
@@ -257,7 +267,7 @@ class ExperimentWriter {
     }
     if (joint.friction != 0.0 || chosen_.friction) {
       const std::string friction =
-          !chosen_.friction ? toText(joint.friction)
+          !chosen_.friction ? writeNumber(joint.friction)
           : joint.friction > 0.0
               ? parameters_.addPositive(q + "_friction", joint.friction, unit)
               : parameters_.addRange(q + "_friction", requireLimit(joint, "friction", effort), unit);
@@ -285,8 +295,10 @@ class ExperimentWriter {
                       "where the joint ends: --stops makes rigid stops of them");
       return;
     }
-    stops_.push_back(fmt::format("{{coordinate: {}, below: {}, restitution: 0}}", q, toText(*limits.lower)));
-    stops_.push_back(fmt::format("{{coordinate: {}, above: {}, restitution: 0}}", q, toText(*limits.upper)));
+    stops_.push_back(
+        fmt::format("{{coordinate: {}, below: {}, restitution: 0}}", q, writeNumber(*limits.lower)));
+    stops_.push_back(
+        fmt::format("{{coordinate: {}, above: {}, restitution: 0}}", q, writeNumber(*limits.upper)));
   }
 
   /// Where the file says nothing of the rotor: up to as much as the joint's own link has about its axis.
@@ -295,7 +307,7 @@ class ExperimentWriter {
       return;
     }
     const char* unit = joint.isAngle() ? "kg m2" : "kg";
-    const std::string inertia = !chosen_.armature ? toText(joint.armature)
+    const std::string inertia = !chosen_.armature ? writeNumber(joint.armature)
                                 : joint.armature > 0.0
                                     ? parameters_.addPositive(q + "_armature", joint.armature, unit)
                                     : parameters_.addRange(q + "_armature", calcOwnInertia(joint), unit);
@@ -329,21 +341,34 @@ class ExperimentWriter {
     }
   }
 
+  /// As recorded, else 0.
+  void addSignal(const std::string& signal, const std::string& unit) {
+    const std::string* column = recording_ ? recording_->take(signal) : nullptr;
+    const std::string terms =
+        column != nullptr
+            ? fmt::format("tables: [{{measured: {{file: {}, column: {}, time: {}, start: {}}}}}]",
+                          quote(recording_->file), quote(*column), quote(recording_->time),
+                          writeNumber(recording_->first))
+            : "pulses: [{amplitude: 0, start: 0, end: 1}]";
+    signals_ += fmt::format("  {}: {{{}{}}}\n", signal, unit, terms);
+  }
+
   std::string writeLaw(const Actuator& actuator, const std::string& signal) {
-    signals_ += fmt::format("  {}: {{pulses: [{{amplitude: 0, start: 0, end: 1}}]}}\n", signal);
+    addSignal(signal, "");
     const auto clamp = [](const std::string& text, const std::optional<std::pair<double, double>>& range) {
-      return range ? fmt::format("clamp({}, {}, {})", text, toText(range->first), toText(range->second))
+      return range ? fmt::format("clamp({}, {}, {})", text, writeNumber(range->first),
+                                 writeNumber(range->second))
                    : text;
     };
     const std::string& q = names_.getCoordinate(actuator.joint);
-    std::string law = toText(actuator.gain) + "*" + clamp(signal, actuator.signal_range);
+    std::string law = writeNumber(actuator.gain) + "*" + clamp(signal, actuator.signal_range);
     const double by_state = actuator.gear;
     for (const auto& [factor, what] :
          {std::pair{actuator.bias[0], std::string()}, std::pair{by_state * actuator.bias[1], "*" + q},
           std::pair{by_state * actuator.bias[2], "*" + q + "_dot"}}) {
-      law += factor != 0.0 ? " + (" + toText(factor) + ")" + what : "";
+      law += factor != 0.0 ? " + (" + writeNumber(factor) + ")" + what : "";
     }
-    return toText(actuator.gear) + "*" + clamp("(" + law + ")", actuator.force_range);
+    return writeNumber(actuator.gear) + "*" + clamp("(" + law + ")", actuator.force_range);
   }
 
   void addClosures() {
@@ -392,22 +417,54 @@ class ExperimentWriter {
   }
 
   std::string writeTail() {
-    std::string outputs, sampled, noise;
+    std::string outputs, columns, noise;
+    std::vector<std::string> all, recorded;
     for (const Body& body : bodies_) {
       for (const std::string& q : names_.takeCoordinates(body)) {
         outputs += fmt::format("  {}: {{coordinate: {}}}\n", q, q);
-        sampled += (sampled.empty() ? "" : ", ") + q;
         noise += (noise.empty() ? "" : ", ") + q + ": unknown";
+        all.push_back(q);
+        if (const std::string* column = recording_ ? recording_->take(q) : nullptr) {
+          columns += (columns.empty() ? "" : ", ") + q + ": " + quote(*column);
+          recorded.push_back(q);
+        }
       }
     }
-    if (sampled.empty()) {
+    if (all.empty()) {
       throw ExperimentError(robot_.file + ": has no joint that moves: try --base free");
     }
     return (signals_.empty() ? "" : "excitation:\n" + signals_) + "outputs:\n" + outputs +
-           "simulation: {duration: 1}\nfeatures:\n  - samples: {outputs: [" + sampled +
-           "], start: 0, interval: 0.01, count: 101}\nnoise: {stddev: {" + noise + "}}\n";
+           writeSamples(recording_ ? recorded : all) + "noise: {stddev: {" + noise + "}}\n" +
+           writeMeasurement(columns);
   }
 
+  std::string writeSamples(const std::vector<std::string>& outputs) const {
+    if (outputs.empty()) {
+      throw ExperimentError(recording_->file + ": no column is called as a joint of " + robot_.file);
+    }
+    const double interval = recording_ ? recording_->interval : kInterval;
+    const int count = recording_ ? recording_->count : kCount;
+    return fmt::format(
+        "simulation: {{duration: {}}}\nfeatures:\n  - samples: {{outputs: [{}], start: 0, interval: {}, "
+        "count: {}}}\n",
+        toShortText(interval * (count - 1), 12), fmt::join(outputs, ", "), toShortText(interval, 12), count);
+  }
+
+  std::string writeMeasurement(const std::string& columns) {
+    if (!recording_) {
+      return "";
+    }
+    for (const std::string& unused : recording_->listUnused()) {
+      robot_.leaveOut(
+          0, "column '" + unused + "' of " + recording_->file,
+          "it is called as no coordinate, and as no signal: say in 'measurement' or 'excitation' what it is");
+    }
+    return fmt::format("measurement:\n  time: {}\n  start: {}\n  columns: {{{}}}\n", quote(recording_->time),
+                       writeNumber(recording_->first), columns);
+  }
+
+  static constexpr double kInterval = 0.01;  ///< s
+  static constexpr int kCount = 101;
   static constexpr double kGravity = 9.81;       ///< m/s2
   static constexpr double kGravityReach = 0.03;  ///< m/s2; at sea level it is 9.780 to 9.832 (WGS 84)
   static constexpr double kThin = 1e-4;  ///< of the widest spread: below it a prior of 20 % says nothing
@@ -420,6 +477,7 @@ class ExperimentWriter {
   RobotNames names_;
   ChosenParameters parameters_;
   std::string gravity_;
+  std::optional<Recording> recording_;
   std::vector<std::string> forces_, springs_, dampers_, friction_, armature_, stops_, gears_;
   std::string signals_;
 };
@@ -435,7 +493,7 @@ std::vector<std::string> describeLeftOut(const Robot& robot) {
   for (const LeftOut& one : robot.left_out) {
     std::string lines;
     for (const int line : one.lines) {
-      lines += (lines.empty() ? "" : ", ") + std::to_string(line);
+      lines += (lines.empty() ? "" : ", ") + (line > 0 ? std::to_string(line) : "-");
     }
     texts.push_back(robot.file + ":" + lines + ": " + one.what + ": " + one.effect);
   }

@@ -158,6 +158,9 @@ void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, c
     throw std::runtime_error("the simulation failed: " + status.reason);
   }
   const Eigen::Index frames = scene.times.size(), n = static_cast<Eigen::Index>(coordinates.size());
+  for (Eigen::Index i = n; scene.motions.empty() && i < layout.getOutputCount(); ++i) {
+    scene.outputs.push_back({layout.output_names[i], layout.output_units[i]});
+  }
   SceneMotion drawn{motion, {}, Eigen::MatrixXd(layout.getOutputCount() - n, frames)};
   for (Eigen::Index output = n; output < layout.getOutputCount(); ++output) {
     drawn.outputs.row(output - n) = response.col(0).segment(layout.getRow(output, 0), frames).transpose();
@@ -185,9 +188,6 @@ Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, 
     addMarks(model, at.names, at.numbers.getValues(), at.values, scene);
   }
   addMotion(experiment, point, motion, scene);
-  for (const OutputSpec& output : model.outputs) {
-    scene.outputs.push_back({output.name.text, output.unit});
-  }
   return scene;
 }
 

@@ -20,6 +20,7 @@ struct ExperimentArguments {
 
 struct CheckArguments {
   ExperimentArguments experiment;
+  std::string svg;    ///< picture of the mechanism; "": none
   bool full = false;  ///< long tables with all values
 };
 
@@ -189,6 +190,7 @@ struct ImportArguments {
   std::string base = "fixed";           ///< or "free"
   std::vector<std::string> parameters;  ///< inertia, friction, armature, damping
   std::vector<std::string> joints;      ///< that move; empty: all
+  std::string csv;                      ///< table whose columns are called as coordinates; "": none
   bool stops = false;                   ///< limits of joints become stops
   bool strict = false;                  ///< what is not carried over is an error
 };

@@ -32,6 +32,12 @@ void addImport(CLI::App& app) {
       ->type_name("NAME,...")
       ->delimiter(',')
       ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--csv", arguments->csv,
+          "Recording whose columns are called as coordinates (angles, in 'deg' too) and signals: they "
+          "become the measurement and the excitation")
+      ->type_name("FILE");
   command->add_flag("--stops", arguments->stops, "Rigid stops, without rebound, at the joints' limits");
   command->add_flag("--strict", arguments->strict, "Fail where anything is left out");
   command->callback([arguments] { importRobot(*arguments); });

@@ -1,6 +1,6 @@
 // The mechanism in WebGL; null where a browser has none.
 import {
-  BufferGeometry, Color, CylinderGeometry, DirectionalLight, Group, HemisphereLight, Line, LineBasicMaterial,
+  AxesHelper, BufferGeometry, Color, CylinderGeometry, DirectionalLight, Group, HemisphereLight, Line, LineBasicMaterial,
   LineDashedMaterial, Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
@@ -51,7 +51,7 @@ function makeBody(body, size, color, opacity) {
 function makeJoint(body, size) {
   const group = new Group();
   group.applyMatrix4(toMatrix(body.in_parent));
-  const material = new MeshStandardMaterial({ color: "#e45756" });
+  const material = new MeshStandardMaterial({ color: "#e45756", depthTest: false, transparent: true }); // seen through bodies
   const axis = new Vector3(...body.axis);
   if (axis.length() > 0) {
     const mesh = new Mesh(new CylinderGeometry(0.012 * size, 0.012 * size, 0.16 * size, 12), material);
@@ -84,7 +84,7 @@ class Machine {
       }
     });
     for (const mark of scene.marks) {
-      const dot = new Mesh(new SphereGeometry(0.025 * size, 12, 8), new MeshStandardMaterial({ color: MARKS[mark.kind] }));
+      const dot = new Mesh(new SphereGeometry(0.025 * size, 12, 8), new MeshStandardMaterial({ color: MARKS[mark.kind], depthTest: false, transparent: true }));
       dot.position.set(...mark.point);
       this.bodies[mark.body].add(dot);
     }
@@ -133,6 +133,7 @@ export function makeStage(stage, scene) {
   world.add(sun);
   const machines = scene.motions.map((motion, i) => new Machine(scene, motion, i, size));
   machines.forEach((machine) => world.add(machine.root));
+  world.add(new AxesHelper(0.4 * size)); // of the ground: red x, green y, blue z
   const camera = new PerspectiveCamera(40, 1, 0.01 * size, 100 * size);
   const controls = new OrbitControls(camera, renderer.domElement);
   const labels = makeLabels(stage, scene);

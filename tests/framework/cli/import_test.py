@@ -208,6 +208,29 @@ class Import(unittest.TestCase):
         (self.folder / "robot.yaml").write_text(result.stdout)
         self.assertEqual(call("simulate", self.folder / "robot.yaml").returncode, 0)
 
+    def test_a_recordings_columns_become_the_measurement_and_the_excitation(self):
+        recording = self.folder / "recording.csv"
+        rows = "".join(f"{100 + 20 * k},{k},{2 * k},0.5,7\n" for k in range(51))
+        recording.write_text("t [ms],shoulder [deg],shoulder_torque,rail,temperature\n" + rows)
+        result = call("import", ROBOTS / "arm.urdf", "--csv", recording)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("column 'temperature' of", result.stderr)
+        experiment = yaml.safe_load(result.stdout)
+        measurement = experiment["measurement"]
+        self.assertEqual(measurement["columns"], {"shoulder": "shoulder [deg]", "rail": "rail"})
+        self.assertEqual((measurement["time"], measurement["start"]), ("t [ms]", 0.1))
+        samples = experiment["features"][0]["samples"]
+        self.assertEqual(samples, {"outputs": ["shoulder", "rail"], "start": 0, "interval": 0.02, "count": 51})
+        self.assertEqual(experiment["simulation"], {"duration": 1})
+        measured = experiment["excitation"]["shoulder_torque"]["tables"][0]["measured"]
+        self.assertEqual((measured["column"], measured["start"]), ("shoulder_torque", 0.1))
+        (self.folder / "robot.yaml").write_text(result.stdout)
+        checked = call("check", self.folder / "robot.yaml", "--svg", self.folder / "robot.svg")
+        self.assertEqual(checked.returncode, 0, checked.stderr)
+        self.assertIn("<ellipse", (self.folder / "robot.svg").read_text())
+        recording.write_text("t,a\n0,1\n1,2\n")
+        self.assertIn("no column is called as a joint", call("import", ROBOTS / "arm.urdf", "--csv", recording).stderr)
+
     def test_a_link_without_mass_between_joints_is_a_frame_that_carries_others(self):
         chain = ROBOTS.joinpath("walker.urdf").read_text()
         start = chain.index("<inertial>", chain.index('name="hip"'))

@@ -57,12 +57,12 @@ void view(const ViewArguments& arguments) {
   }
   if (!arguments.svg.empty()) {
     writeTextFile(arguments.svg, twinmap::view::makePicture(scene));
-    std::cout << arguments.svg << ": the mechanism as it begins\n";
+    std::cerr << arguments.svg << ": the mechanism as it begins\n";
   }
   const std::string out = !arguments.out.empty() ? arguments.out : experiment.name.text + ".html";
   if (!arguments.out.empty() || arguments.svg.empty()) {
     writeTextFile(out, twinmap::view::makePage(scene));
-    std::cout << out << ": the mechanism, moving; open it in a browser\n";
+    std::cerr << out << ": the mechanism, moving; open it in a browser\n";
   }
 }
 
