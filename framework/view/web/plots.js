@@ -30,11 +30,19 @@ function makePlot(parent, scene, index) {
     const points = row.map((value, k) => `${x(scene.times[k]).toFixed(1)},${y(value).toFixed(1)}`);
     make("polyline", { class: `curve motion${i}`, points: points.join(" ") }, svg);
   });
-  const cursor = make("line", { class: "cursor", y1: TOP, y2: HEIGHT - BOTTOM }, svg);
+  const cursor = document.createElement("div"); // over the drawing, which is then not drawn again
+  cursor.className = "cursor";
+  figure.append(cursor);
   parent.append(figure);
+  let shown = false, now = 0;
+  const place = () => { cursor.style.transform = `translateX(${(x(now) / WIDTH) * figure.clientWidth}px)`; };
+  new IntersectionObserver(([entry]) => {
+    shown = entry.isIntersecting;
+    place();
+  }).observe(figure);
   return (time) => {
-    cursor.setAttribute("x1", x(time));
-    cursor.setAttribute("x2", x(time));
+    now = time;
+    if (shown) place();
   };
 }
 

@@ -1,7 +1,7 @@
 // The mechanism in WebGL; null where a browser has none.
 import {
   AxesHelper, BufferGeometry, Color, CylinderGeometry, DirectionalLight, Group, HemisphereLight, Line, LineBasicMaterial,
-  LineDashedMaterial, Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
+  LineDashedMaterial, Mesh, MeshLambertMaterial, PerspectiveCamera, Scene, SphereGeometry, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { findFrame, setPose, toMatrix } from "./poses.js";
@@ -10,9 +10,10 @@ const COLORS = ["#4c78a8", "#e45756", "#54a24b"]; // of motions
 const LINES = { spring: "#54a24b", damper: "#b279a2", rod: "#888888" };
 const MARKS = { force: "#f58518", sensor: "#72b7b2", contact: "#9d755d" };
 
+// Without smoothed edges, which take half of the time where a processor draws; screens of small pixels do not show it.
 function makeRenderer(stage) {
   try {
-    const renderer = new WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+    const renderer = new WebGLRenderer({ antialias: false });
     stage.append(renderer.domElement);
     return renderer;
   } catch (error) {
@@ -39,7 +40,7 @@ function makeBody(body, size, color, opacity) {
   const group = new Group();
   if (body.mass) {
     const smallest = 0.02 * size;
-    const mesh = new Mesh(new SphereGeometry(1, 24, 16), new MeshStandardMaterial({ color, transparent: true, opacity, roughness: 0.6 }));
+    const mesh = new Mesh(new SphereGeometry(1, 20, 12), new MeshLambertMaterial({ color, transparent: true, opacity }));
     mesh.applyMatrix4(toMatrix(body.ellipsoid));
     mesh.scale.set(...body.radii.map((radius) => Math.max(radius, smallest)));
     group.add(mesh);
@@ -51,7 +52,7 @@ function makeBody(body, size, color, opacity) {
 function makeJoint(body, size) {
   const group = new Group();
   group.applyMatrix4(toMatrix(body.in_parent));
-  const material = new MeshStandardMaterial({ color: "#e45756", depthTest: false, transparent: true }); // seen through bodies
+  const material = new MeshLambertMaterial({ color: "#e45756", depthTest: false, transparent: true }); // seen through bodies
   const axis = new Vector3(...body.axis);
   if (axis.length() > 0) {
     const mesh = new Mesh(new CylinderGeometry(0.012 * size, 0.012 * size, 0.16 * size, 12), material);
@@ -84,7 +85,7 @@ class Machine {
       }
     });
     for (const mark of scene.marks) {
-      const dot = new Mesh(new SphereGeometry(0.025 * size, 12, 8), new MeshStandardMaterial({ color: MARKS[mark.kind], depthTest: false, transparent: true }));
+      const dot = new Mesh(new SphereGeometry(0.025 * size, 12, 8), new MeshLambertMaterial({ color: MARKS[mark.kind], depthTest: false, transparent: true }));
       dot.position.set(...mark.point);
       this.bodies[mark.body].add(dot);
     }
@@ -149,13 +150,15 @@ export function makeStage(stage, scene) {
   function reset() {
     const side = Math.abs(up.z) > 0.5 ? new Vector3(0.5, -0.8, 0.35) : new Vector3(0.35, 0.35, 0.9);
     camera.up.copy(up);
-    camera.position.copy(middle).addScaledVector(side.normalize(), 3.4 * size);
+    camera.position.copy(middle).addScaledVector(side.normalize(), 2.8 * size);
     controls.target.copy(middle);
     controls.update();
   }
 
+  let width = 1, height = 1;
   function resize() {
-    const width = stage.clientWidth, height = Math.max(240, Math.round(width * 0.5625));
+    width = stage.clientWidth;
+    height = Math.max(240, Math.round(width * 0.5625));
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     renderer.setSize(width, height);
     camera.aspect = width / height;
@@ -166,7 +169,6 @@ export function makeStage(stage, scene) {
   reset();
 
   function placeLabels() {
-    const { width, height } = renderer.domElement.getBoundingClientRect();
     labels.forEach((label, i) => {
       const at = machines[0].place(i, scene.bodies[i].ellipsoid.slice(9)).add(machines[0].root.position).project(camera);
       label.style.display = shown && i > 0 && Math.abs(at.z) < 1 ? "" : "none";

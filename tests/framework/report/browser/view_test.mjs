@@ -43,7 +43,10 @@ async function close(page) {
 }
 
 const getTime = page => page.evaluate(() => window.twinmap.state.time);
-const readPixels = page => page.evaluate(() => document.querySelector('#stage canvas').toDataURL());
+const readPixels = page => page.evaluate(() => {
+  window.twinmap.stage.render();
+  return document.querySelector('#stage canvas').toDataURL();
+});
 
 test('the poses that are drawn are those of the scene', async () => {
   const page = await open();
