@@ -46,13 +46,21 @@ class UrdfReader {
   }
 
  private:
+  /// An element or value of xacro.
+  static bool isMacro(const pugi::xml_node& node) {
+    const auto attributes = node.attributes();
+    return std::string(node.name()).rfind("xacro:", 0) == 0 ||
+           std::any_of(attributes.begin(), attributes.end(), [](const pugi::xml_attribute& attribute) {
+             return std::string(attribute.value()).find("${") != std::string::npos;
+           });
+  }
+
   void requireUrdf(const pugi::xml_node& root) const {
     const std::string name = root.name();
     if (name != "robot") {
       file_.fail(root, "is not a URDF: its first element must be <robot>");
     }
-    const pugi::xml_node macro = root.find_node(
-        [](const pugi::xml_node& node) { return std::string(node.name()).rfind("xacro:", 0) == 0; });
+    const pugi::xml_node macro = root.find_node(isMacro);
     if (macro) {
       file_.fail(macro, "is a macro: expand the file first (xacro robot.urdf.xacro > robot.urdf)");
     }

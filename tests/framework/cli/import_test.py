@@ -181,6 +181,7 @@ class Import(unittest.TestCase):
              '<mimic joint="right"/>', "leave one <mimic> out"),
             (ARM.replace('<transmission name="drive">', '<xacro:drive/><transmission name="drive">'),
              "<xacro:drive/>", "xacro robot.urdf.xacro > robot.urdf"),
+            (ARM.replace('<mass value="0.8"/>', '<mass value="${m}"/>'), '<mass value="${m}"/>', "xacro robot.urdf.xacro >"),
             (ARM.replace('<mass value="0.8"/>', '<mass value="heavy"/>'), '<mass value="heavy"/>', "must hold numbers"),
             (ARM.replace('<parent link="slide"/>', '<parent link="slid"/>'), '<joint name="wrist" ', "has no link 'slid'"),
             (ARM.replace('<child link="slide"/>', '<child link="hand"/>'), '<joint name="wrist_hand"', "two joints to parents"),
