@@ -24,14 +24,29 @@ bool isPrescribed(const ModelSpec& model, const std::string& coordinate) {
                      [&](const MotionSpec& motion) { return motion.coordinate.text == coordinate; });
 }
 
+/// Whether an expression is of parameters and constants alone.
+bool isConstant(const ModelSpec& model, const Expression& expression) {
+  const auto known = [](const auto& items, const std::string& name) {
+    return std::any_of(items.begin(), items.end(), [&](const auto& item) { return item.name.text == name; });
+  };
+  const std::vector<std::string> used = getUsedNames(expression);
+  return std::all_of(used.begin(), used.end(), [&](const std::string& name) {
+    return known(model.parameters, name) || known(model.nuisance, name) || known(model.inputs, name) ||
+           known(model.constants, name);
+  });
+}
+
 template <class Element>
-Expression makeReach(const Element&) {
+Expression makeReach(const ModelSpec&, const Element&) {
   return {"", {}};
 }
 
-/// A bristle slides where it carries the friction of rest.
-Expression makeReach(const Friction<Expression>& friction) {
+/// A bristle slides where it carries the friction of rest, if that is known before it moves.
+Expression makeReach(const ModelSpec& model, const Friction<Expression>& friction) {
   const Expression& level = getStaticLevel(friction);
+  if (!isConstant(model, level)) {
+    return {"", {}};
+  }
   return {"(" + level.text + ") / (" + friction.bristle->stiffness.text + ")", level.where};
 }
 
@@ -59,7 +74,7 @@ std::vector<StartState> listStartStates(const ModelSpec& model) {
   model.system.elements.forEachList([&](const auto& list) {
     for (const auto& element : list) {
       forEachOwnState(element, [&](const auto& part, const Name&) {
-        states.push_back({state_names[next++], Kind::kState, part.initial, makeReach(element)});
+        states.push_back({state_names[next++], Kind::kState, part.initial, makeReach(model, element)});
       });
     }
   });

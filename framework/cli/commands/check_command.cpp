@@ -85,6 +85,12 @@ void check(const CheckArguments& arguments) {
   if (readExperiment(tree).inverse_map.isNone()) {
     std::cout << "# no inverse map: measurements are inferred by their posterior on the simulator\n";
   }
+  if (!arguments.svg.empty()) {
+    ViewArguments picture;
+    picture.experiment = arguments.experiment;
+    picture.svg = arguments.svg;
+    view(picture);
+  }
   const std::string text = tree.find("sweep") == nullptr ? writeExperiment(readExperimentWithSignals(tree))
                                                          : writeIndependentDefaults(tree);
   std::cout << (arguments.full ? text : abbreviateTables(text));

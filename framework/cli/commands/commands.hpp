@@ -20,6 +20,7 @@ struct ExperimentArguments {
 
 struct CheckArguments {
   ExperimentArguments experiment;
+  std::string svg;    ///< picture of the mechanism; "": none
   bool full = false;  ///< long tables with all values
 };
 
@@ -172,6 +173,38 @@ struct ExportArguments {
   bool trust = true;               ///< judge measurements
 };
 
+/// Of a robot's file with an estimate's numbers.
+struct RobotExportArguments {
+  std::string estimate;            ///< JSON that infer wrote, or as of infer, with a measurement
+  std::string measurement;         ///< "": `estimate` is JSON
+  std::optional<double> start;     ///< as of infer
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::string robot;               ///< its file, URDF or MJCF; "": no such export
+  std::string out;                 ///< file to write; a JSON file beside it
+  bool anyway = false;             ///< also of an estimate that is not ok
+  int draws = 0;                   ///< files with numbers drawn from the estimate
+  std::string draws_folder;
+};
+
+struct ImportArguments {
+  std::string file;                     ///< URDF
+  std::string base = "fixed";           ///< or "free"
+  std::vector<std::string> parameters;  ///< inertia, friction, armature, damping
+  std::vector<std::string> joints;      ///< that move; empty: all
+  std::string csv;                      ///< table whose columns are called as coordinates; "": none
+  bool stops = false;                   ///< limits of joints become stops
+  bool strict = false;                  ///< what is not carried over is an error
+};
+
+struct ViewArguments {
+  ExperimentArguments experiment;  ///< or a run, without overrides
+  std::string measurement;         ///< its updated model moves too; "": none
+  std::optional<double> start;     ///< as of infer
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::string out;                 ///< page; "": NAME.html, or none where a picture is asked for
+  std::string svg;                 ///< picture; "": none
+};
+
 struct ReplayArguments {
   std::string run;                   ///< folder of a run, or its maps.h5
   std::string file;                  ///< the measurement that is simulated again
@@ -285,6 +318,17 @@ void validate(const ValidateArguments& arguments);
 /// Prints the evidence of several experiments for the same measurements, and how well each predicts those
 /// that it is not fitted to.
 void select(const SelectArguments& arguments);
+
+/// Prints an experiment file that describes a robot, and what it leaves out on stderr. Throws ExperimentError
+/// for a file that cannot be imported, with `strict` also where anything is left out.
+void importRobot(const ImportArguments& arguments);
+
+/// Writes a page on which the mechanism moves, or a picture of it.
+void view(const ViewArguments& arguments);
+
+/// Writes a robot's file with an estimate's numbers, all else as it is. Throws ExperimentError for an
+/// estimate that is not ok, and parameters that fit nothing in the file.
+void exportRobot(const RobotExportArguments& arguments);
 
 /// Writes a trained map for other programs. Throws ExperimentError for a run that cannot be exported.
 void exportMap(const ExportArguments& arguments);

@@ -19,6 +19,9 @@ void addExperimentCommands(CLI::App& app, const Invocation& invocation);
 /// infer, replay, export, noise, look.
 void addMapCommands(CLI::App& app, const Invocation& invocation);
 
+/// import, view.
+void addRobotCommands(CLI::App& app);
+
 /// diagnose, validate, select.
 void addDiagnosisCommands(CLI::App& app);
 

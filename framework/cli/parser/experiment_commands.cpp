@@ -17,6 +17,7 @@ void addCheck(CLI::App& app) {
       "nothing.");
   addExperiment(*command, arguments->experiment);
   command->add_flag("--full", arguments->full, "Print long tables with all their values");
+  command->add_option("--svg", arguments->svg, "File for a picture of the mechanism")->type_name("FILE");
   command->callback([arguments] { check(*arguments); });
 }
 

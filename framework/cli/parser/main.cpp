@@ -51,7 +51,7 @@ std::string joinArguments(int count, char** arguments) {
 void groupCommands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> groups[] = {
       {"From a model to an estimate",
-       {"check", "simulate", "run", "infer", "diagnose", "validate", "select", "replay"}},
+       {"import", "view", "check", "simulate", "run", "infer", "diagnose", "validate", "select", "replay"}},
       {"Improve the experiment", {"look", "noise", "design"}},
       {"Look after runs", {"plan", "status", "report", "compare", "verify", "store"}},
       {"Take the estimator elsewhere", {"export"}},
@@ -95,6 +95,7 @@ int runCommand(int count, char** arguments) {
   const cli::Invocation invocation{joinArguments(count, arguments), twinmap::countThreads()};
   cli::addExperimentCommands(app, invocation);
   cli::addMapCommands(app, invocation);
+  cli::addRobotCommands(app);
   cli::addDiagnosisCommands(app);
   cli::addResultCommands(app, invocation);
   cli::addClusterCommands(app, invocation);

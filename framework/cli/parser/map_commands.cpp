@@ -1,12 +1,24 @@
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <memory>
 
+#include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/parser/command_groups.hpp"
 #include "framework/cli/parser/shared_options.hpp"
 
 namespace twinmap::cli {
 namespace {
+
+/// Of --draws.
+int readCount(const std::string& text) {
+  constexpr int kMost = 100000;
+  double count = 0.0;
+  if (!parseLiteral(text, count) || count != std::floor(count) || count < 1 || count > kMost) {
+    throw CLI::ValidationError("--draws", "must be a whole number from 1 to 100000, then a folder: " + text);
+  }
+  return static_cast<int>(count);
+}
 
 /// Recordings that are inferred together.
 void addJointInference(CLI::App& command, InferArguments& arguments) {
@@ -108,10 +120,47 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
   command->callback([arguments] { replay(*arguments); });
 }
 
+void addRobotExport(CLI::App& command, RobotExportArguments& arguments) {
+  CLI::Option* urdf = command.add_option(
+      "--urdf,--mjcf", arguments.robot,
+      "URDF or MJCF that the experiment was imported from: written with what was estimated");
+  urdf->type_name("FILE");
+  command
+      .add_option("MEASUREMENT", arguments.measurement,
+                  "Of --urdf and --mjcf: file to estimate from, as infer takes it")
+      ->option_text(" ");
+  command.add_option("--start", arguments.start, "Time in the file (s) at which the model's time is 0")
+      ->type_name("S")
+      ->needs(urdf);
+  command.add_option("--set", arguments.known, "Value of a known input of the set-up; for each of them")
+      ->type_name("NAME=VALUE")
+      ->needs(urdf);
+  command
+      .add_option("--out", arguments.out, "File for the URDF or MJCF; values and sds go beside it, as JSON")
+      ->type_name("FILE")
+      ->needs(urdf);
+  command.add_flag("--anyway", arguments.anyway, "Also of an estimate that is not ok")->needs(urdf);
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--draws",
+          [&arguments](const std::vector<std::string>& values) {
+            arguments.draws = readCount(values[0]);
+            arguments.draws_folder = values[1];
+          },
+          "N files drawn from the estimate, in a folder, with their numbers as CSV")
+      ->type_name("N DIR")
+      ->expected(2)
+      ->needs(urdf);
+}
+
 void addExport(CLI::App& app) {
   const auto arguments = std::make_shared<ExportArguments>();
-  CLI::App* command = app.add_subcommand("export", "Write the trained estimator as C99, FMU or JSON");
-  addArgument(*command, "RUN", arguments->run, "Folder of a finished run");
+  const auto robot = std::make_shared<RobotExportArguments>();
+  CLI::App* command = app.add_subcommand(
+      "export", "Write the trained estimator as C99, FMU or JSON, or what was estimated as URDF or MJCF");
+  addArgument(*command, "RUN", arguments->run,
+              "Folder of a finished run; for a robot also an experiment file, or JSON of infer");
+  addRobotExport(*command, *robot);
   addOption(*command, "--c", "DIR", arguments->c_folder,
             "Folder for C sources with a self-test and README.md");
   CLI::Option* fmu = command->add_option("--fmu", arguments->fmu, "File for an FMU for Co-Simulation");
@@ -127,7 +176,10 @@ void addExport(CLI::App& app) {
   command->add_flag_callback(
       "--no-trust", [arguments] { arguments->trust = false; }, "C without the trust status");
   addOption(*command, "--prefix", "NAME", arguments->prefix, "Of names and files in C (default: twinmap)");
-  command->callback([arguments] { exportMap(*arguments); });
+  command->callback([arguments, robot] {
+    robot->estimate = arguments->run;
+    robot->robot.empty() ? exportMap(*arguments) : exportRobot(*robot);
+  });
 }
 
 void addNoise(CLI::App& app) {

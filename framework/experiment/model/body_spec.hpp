@@ -45,6 +45,7 @@ struct InertiaSpec {
   Expression3 products;                 ///< Ixy, Ixz, Iyz (entries of the tensor), kg m2
   std::optional<Expression3> spread{};  ///< m; replaced by moments and products (resolveDefaults)
   std::optional<Expression3> skew{};    ///< m, beside spread
+  std::optional<bool> unchecked{};      ///< moments and products that no body has, as of an imported robot
 };
 
 inline bool isTensorGiven(const InertiaSpec& inertia) {
@@ -61,6 +62,10 @@ inline Expression3 getMoments(const InertiaSpec& inertia) {
              : Expression3{inertia.about_axis, inertia.about_axis, inertia.about_axis};
 }
 
+inline bool isUnchecked(const InertiaSpec& inertia) {
+  return inertia.unchecked.value_or(false);
+}
+
 template <class Fields>
 void describe(Fields& f, InertiaSpec& s) {
   f.scalarIsValueOf("about_axis");
@@ -75,8 +80,11 @@ void describe(Fields& f, InertiaSpec& s) {
              "of an existing body, whatever the values",
              Unit{"m"});
   f.optional("skew", s.skew, "xy, xz, yz: how the spreads lean, beside 'spread'; default 0", Unit{"m"});
+  f.optional("unchecked", s.unchecked,
+             "take moments and products that no body has, as in a robot's file; only lanes simulate them");
   f.rule((s.about_axis.text.empty() ? 0 : 1) + (isTensorGiven(s) ? 1 : 0) + (s.spread ? 1 : 0) <= 1,
          "must give one of a moment about the joint's axis, 'moments' with 'products', and 'spread'");
+  f.rule(!isUnchecked(s) || isTensorGiven(s), "must give 'moments' beside 'unchecked'");
   f.rule(s.spread || !s.skew, "must give 'spread' beside 'skew'");
 }
 
@@ -86,6 +94,7 @@ struct BodySpec {
   Expression3 center_of_mass;  ///< in the body frame, m
   InertiaSpec inertia;
   JointSpec joint;
+  std::optional<bool> massless{};  ///< carries others, and has no mass of its own
 };
 
 template <class Fields>
@@ -94,6 +103,8 @@ void describe(Fields& f, BodySpec& s) {
   f.optional("center_of_mass", s.center_of_mass, "in the body's frame", Unit{"m"});
   f.optional("inertia", s.inertia, "about the body's own centre of mass");
   f.required("joint", s.joint, "how the body is connected to its parent");
+  f.optional("massless", s.massless,
+             "beside 'mass: 0': a frame between joints, which carries bodies with mass");
 }
 
 }  // namespace twinmap

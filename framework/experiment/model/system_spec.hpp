@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "framework/experiment/model/armature_spec.hpp"
 #include "framework/experiment/model/body_spec.hpp"
 #include "framework/experiment/model/constraint_spec.hpp"
 #include "framework/experiment/model/controller_spec.hpp"
@@ -20,6 +21,7 @@ struct SystemSpec {
   std::vector<CurveSpec> curves;             ///< functions that expressions of the state may use
   std::vector<NamedExpression> expressions;  ///< each may use those before it
   std::vector<MotionSpec> motions;           ///< prescribed ones
+  std::vector<ArmatureSpec> armature;        ///< inertias of coordinates
   std::vector<ControllerSpec> controllers;   ///< sampled ones
   ForceElements<Expression> elements;
   std::vector<ConstraintSpec> constraints;  ///< beside those of the joints: loops, rods, gears
@@ -45,6 +47,7 @@ void describe(Fields& f, SystemSpec& s) {
   f.optionalMap("curves", s.curves, "static curves by their knots, for expressions: motor(u)");
   f.optionalMap("expressions", s.expressions,
                 "named once, for all expressions that may use coordinates and states");
+  f.optional("armature", s.armature, "inertias of coordinates: rotors of drives");
   f.optional("motions", s.motions, "coordinates that move as a signal says");
   f.optionalMap("controllers", s.controllers, "sampled controllers, which read, compute and hold");
   describeElements(f, s.elements);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "framework/experiment/expression/named_values.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/mechanism/system_names.hpp"
 
@@ -60,7 +62,14 @@ class ElementSources {
   std::size_t next_ = 0;
 };
 
-/// Fills the fields of an element over S. `Numbers`: calc(expression, owner, key, unit) gives an S.
+/// Whether an expression uses these names alone.
+inline bool usesOnly(const DefinedNames& names, const Expression& expression) {
+  const std::vector<std::string> used = getUsedNames(expression);
+  return std::all_of(used.begin(), used.end(), [&](const std::string& name) { return names.contains(name); });
+}
+
+/// Fills the fields of an element over S. `Numbers`: calc(expression, owner, key, unit) gives an S,
+/// knows(expression) says whether it can.
 template <class S, class Numbers>
 class ElementFiller {
  public:
@@ -126,6 +135,14 @@ class ElementFiller {
     field = {rotateXyz(calc3(frame.orientation, prefix_ + key + ".orientation", "rad")),
              calc3(frame.point, prefix_ + key + ".point", "m")};
   }
+  void fill(const char* key, StateNumber<S>& field, const Unit& unit) {
+    const Expression& expression = sources_.take<Expression>();
+    if (numbers_.knows(expression)) {
+      field.value = calc(expression, prefix_ + key, unit.rotation == nullptr ? unit.text : "");
+    } else {
+      field.varying = &expression;
+    }
+  }
   void fill(const char*, const Expression*& field, const Unit&) { field = &sources_.take<Expression>(); }
   void fill(const char*, const Expression3*& field, const Unit&) { field = &sources_.take<Expression3>(); }
   template <class T>
@@ -180,7 +197,7 @@ void placeSwitches(ForceElements<S>& elements) {
   }
 }
 
-/// The numbers of all force elements. `numbers`: calc(expression, owner, key, unit) gives an S, or throws.
+/// The numbers of all force elements. `numbers`: as of ElementFiller; calc() may throw.
 /// The numbers refer to expressions of `spec`, which must outlive them. Throws ExperimentError for unknown
 /// names and for a force on a coordinate that takes none. `first_state`: how many states are not elements'
 /// own.

@@ -10,6 +10,9 @@ struct FiniteNumbers {
   double calc(const Expression& expression, const std::string& owner, const char* key, const char* unit) {
     return numbers.calc(expression, {owner, key, unit});
   }
+  bool knows(const Expression& expression) const {
+    return equations::usesOnly(numbers.getValues(), expression);
+  }
 };
 
 }  // namespace

@@ -119,6 +119,9 @@ std::vector<NumberCheck> listNumberChecks(const ModelSpec& model) {
     add(false, [&body](ModelContext& context) { calcMassNumbers(body, context.numbers); });
     add(false, [&body](ModelContext& context) { calcJointNumbers(body, context.numbers); });
   }
+  for (const ArmatureSpec& armature : model.system.armature) {
+    add(false, [&armature](ModelContext& context) { checkArmature(armature, context.numbers); });
+  }
   for (const CurveSpec& curve : model.system.curves) {
     add(true, [&curve](ModelContext& context) {
       for (const Expression& value : curve.values) {

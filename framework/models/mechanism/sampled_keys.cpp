@@ -87,6 +87,13 @@ ModelSpec removeSampled(ModelSpec model) {
   }
   model.system.motions.clear();
   model.system.controllers.clear();
+  model.system.armature.clear();
+  for (BodySpec& body : model.system.bodies) {
+    if (isUnchecked(body.inertia)) {
+      body.inertia = InertiaSpec{};  // one that exists
+      body.inertia.moments.fill({"1", {}});
+    }
+  }
   for (OutputSpec& output : model.outputs) {
     output.sensor.reset();
   }
@@ -100,6 +107,14 @@ std::string findSampledKey(const ModelSpec& model) {
   }
   if (!model.system.controllers.empty()) {
     return "system.controllers." + model.system.controllers.front().name.text;
+  }
+  if (!model.system.armature.empty()) {
+    return "system.armature";
+  }
+  for (const BodySpec& body : model.system.bodies) {
+    if (isUnchecked(body.inertia)) {
+      return "system.bodies." + body.name.text + ".inertia.unchecked";
+    }
   }
   const auto found = std::find_if(model.outputs.begin(), model.outputs.end(),
                                   [](const OutputSpec& output) { return output.sensor.has_value(); });

@@ -15,7 +15,8 @@ ModelSpec addControllerStates(ModelSpec model);
 
 /// The model without what only lanes simulate: sensors that remember, round or clip, prescribed motions,
 /// controllers, whose states stand still, and what switches: rigid stops, friction that sticks, whose forces
-/// outputs then show as 0, and dampers that begin at a touch. `model`: of addControllerStates().
+/// outputs then show as 0, dampers that begin at a touch, and armature. What no body has as its inertia
+/// becomes one of 1 kg m2. `model`: of addControllerStates().
 ModelSpec removeSampled(ModelSpec model);
 
 /// The first key that removeSampled() takes out, such as "outputs.q.sensor"; "" if there is none.

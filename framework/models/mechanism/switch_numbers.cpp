@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <limits>
 
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/models/mechanism/element_values.hpp"
 
 namespace twinmap {
 namespace {
@@ -14,6 +16,13 @@ void requireBetween(const Expression& expression, const Quantity& quantity, doub
   const double value = numbers.calc(expression, quantity);
   if (value < 0.0 || value > largest) {
     throwUnusable(quantity, value, rule, expression.where);
+  }
+}
+
+/// What depends on the state is not known yet.
+void requireLevel(const Expression& level, const Quantity& quantity, ModelNumbers& numbers) {
+  if (equations::usesOnly(numbers.getValues(), level)) {
+    requireBetween(level, quantity, std::numeric_limits<double>::infinity(), "must not be negative", numbers);
   }
 }
 
@@ -27,7 +36,6 @@ void checkPlay(const SystemSpec& system, ModelNumbers& numbers) {
 }  // namespace
 
 void checkSwitchNumbers(const SystemSpec& system, ModelNumbers& numbers) {
-  constexpr double kAny = std::numeric_limits<double>::infinity();
   checkPlay(system, numbers);
   for (const Stop<Expression>& stop : system.elements.get<Stop>()) {
     if (stop.isRigid()) {
@@ -38,10 +46,9 @@ void checkSwitchNumbers(const SystemSpec& system, ModelNumbers& numbers) {
   for (const Friction<Expression>& friction : system.elements.get<Friction>()) {
     if (friction.switches()) {
       const std::string owner = "friction on '" + friction.coordinate.text + "'";
-      requireBetween(friction.coulomb, {owner, "coulomb", ""}, kAny, "must not be negative", numbers);
+      requireLevel(friction.coulomb, {owner, "coulomb", ""}, numbers);
       if (friction.stribeck) {
-        requireBetween(friction.stribeck->level, {owner, "stribeck.level", ""}, kAny, "must not be negative",
-                       numbers);
+        requireLevel(friction.stribeck->level, {owner, "stribeck.level", ""}, numbers);
       }
     }
   }

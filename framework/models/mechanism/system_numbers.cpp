@@ -143,17 +143,33 @@ FrameNumbers calcFrame(const FrameSpec& frame, ModelNumbers& numbers, const std:
 MassNumbers calcMassNumbers(const BodySpec& body, ModelNumbers& numbers) {
   const std::string owner = "body '" + body.name.text + "'";
   MassNumbers mass{};
-  mass.mass = numbers.calcPositive(body.mass, {owner, "mass", "kg"});
+  const bool is_frame = body.massless.value_or(false);
+  mass.mass = is_frame ? numbers.calc(body.mass, {owner, "mass", "kg"})
+                       : numbers.calcPositive(body.mass, {owner, "mass", "kg"});
   mass.center = calcVector(numbers, body.center_of_mass, {owner, "center_of_mass", "m"});
   const Expression& about_axis = body.inertia.about_axis;
   mass.moments = about_axis.text.empty()
                      ? calcVector(numbers, body.inertia.moments, {owner, "inertia.moments", "kg m2"})
                      : Vector3d::Constant(numbers.calc(about_axis, {owner, "inertia", "kg m2"}));
   mass.products = calcVector(numbers, body.inertia.products, {owner, "inertia.products", "kg m2"});
-  checkRange(body, owner, mass.mass, mass.center);
-  checkInertia(owner, calcPrincipalMoments(mass.moments, mass.products),
-               about_axis.text.empty() ? body.inertia.moments[0].where : about_axis.where);
+  if (!is_frame) {
+    checkRange(body, owner, mass.mass, mass.center);
+  } else if (mass.mass != 0.0 || !mass.moments.isZero(0.0) || !mass.products.isZero(0.0)) {
+    throw SimulationFailure(owner + ": is massless, so its mass and inertia must be 0", body.mass.where);
+  }
+  if (!isUnchecked(body.inertia)) {
+    checkInertia(owner, calcPrincipalMoments(mass.moments, mass.products),
+                 about_axis.text.empty() ? body.inertia.moments[0].where : about_axis.where);
+  }
   return mass;
+}
+
+void checkArmature(const ArmatureSpec& armature, ModelNumbers& numbers) {
+  const Quantity quantity{"armature of '" + armature.coordinate.text + "'", "inertia", "kg m2"};
+  const double inertia = numbers.calc(armature.inertia, quantity);
+  if (inertia < 0.0) {
+    throwUnusable(quantity, inertia, "must not be negative", armature.inertia.where);
+  }
 }
 
 JointNumbers calcJointNumbers(const BodySpec& body, ModelNumbers& numbers) {

@@ -68,6 +68,9 @@ FrameNumbers calcFrame(const FrameSpec& frame, ModelNumbers& numbers, const std:
 /// Throws SimulationFailure also for a mass that is not positive and an inertia that no body has.
 MassNumbers calcMassNumbers(const BodySpec& body, ModelNumbers& numbers);
 
+/// Throws SimulationFailure for one below 0.
+void checkArmature(const ArmatureSpec& armature, ModelNumbers& numbers);
+
 /// Throws SimulationFailure also for an axis of no length.
 JointNumbers calcJointNumbers(const BodySpec& body, ModelNumbers& numbers);
 

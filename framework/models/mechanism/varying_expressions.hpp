@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,14 @@ class VaryingFields {
     for (const Expression& component : field) {
       if (unit.varies) {
         action_(component);
+      }
+    }
+  }
+  template <class T, class... Rule>
+  void required(const char*, std::optional<T>& field, const char*, const Rule&...) {
+    if constexpr (kIsPart<T>) {
+      if (field) {
+        describe(*this, *field);
       }
     }
   }

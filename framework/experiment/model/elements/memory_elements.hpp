@@ -9,6 +9,15 @@
 
 namespace twinmap {
 
+/// A number of an element, or, where it depends on coordinates, speeds, states, signals or time, how.
+template <class S>
+struct StateNumber {
+  S value{};
+  const Expression* varying = nullptr;  ///< in place of the value
+};
+template <class S>
+using StateNumberOf = std::conditional_t<kIsFile<S>, Expression, StateNumber<S>>;
+
 /// `value` over any scalar; over expressions its `text`.
 template <class S>
 S makeDefault(double value, const char* text) {
@@ -50,7 +59,8 @@ void describe(Fields& f, Bristle<S>& s) {
 /// speed)^exponent).
 template <class S>
 struct Stribeck {
-  S level{}, speed{}, exponent = makeDefault<S>(2.0, "2");
+  StateNumberOf<S> level{};
+  S speed{}, exponent = makeDefault<S>(2.0, "2");
 };
 
 template <class S>
@@ -58,7 +68,8 @@ inline constexpr bool kIsPart<Stribeck<S>> = true;
 
 template <class Fields, class S>
 void describe(Fields& f, Stribeck<S>& s) {
-  f.required("level", s.level, "of friction at rest", Unit{"N", "N m"});
+  f.required("level", s.level, "of friction at rest; may depend on load as 'coulomb'",
+             Unit{"N", "N m", true});
   f.required("speed", s.speed, "over which it falls to the Coulomb level", Unit{"m/s", "rad/s"});
   f.optional("exponent", s.exponent, "of the speed", Unit{"1"});
 }
@@ -73,7 +84,8 @@ struct EnumNames<FrictionModel> {
 };
 
 /// Friction on a coordinate, or between two, with g(v) the Coulomb or Stribeck level at the sliding speed v,
-/// the coordinate's rate less that of the other and of the surface.
+/// the coordinate's rate less that of the other and of the surface. The levels and the viscous factor may
+/// depend on load: on coordinates, speeds, states and signals.
 /// - lugre (IEEE Trans. Automatic Control 40, 1995, p. 419): dz/dt = v - s0 |v| z / g(v), force
 ///   -(s0 z + s1 dz/dt + viscous v), with stiffness s0 and damping s1 of the bristle;
 /// - regularised: force -(g(v) tanh(v / onset_speed) + viscous v), which creeps under any load;
@@ -85,7 +97,7 @@ struct Friction {
   CoordinateOf<S> coordinate{};
   OtherCoordinateOf<S> against{};
   FrictionModel model = FrictionModel::kLugre;
-  S coulomb{}, viscous{};
+  StateNumberOf<S> coulomb{}, viscous{};
   std::optional<Stribeck<S>> stribeck{};
   std::optional<Bristle<S>> bristle{};
   std::optional<S> onset_speed{}, surface_speed{};
@@ -102,8 +114,11 @@ void describe(Fields& f, Friction<S>& s) {
              Reference::kForcedCoordinate);
   f.required("model", s.model,
              "lugre: a bristle that sticks and slips; regularised: tanh; coulomb: exact sticking");
-  f.required("coulomb", s.coulomb, "level of friction while sliding", Unit{"N", "N m"});
-  f.optional("viscous", s.viscous, "force for each unit of speed", Unit{"N s/m", "N m s/rad"});
+  f.required("coulomb", s.coulomb,
+             "level of friction while sliding; may use excitation signals, coordinates, speeds, states and t",
+             Unit{"N", "N m", true});
+  f.optional("viscous", s.viscous, "force for each unit of speed; likewise",
+             Unit{"N s/m", "N m s/rad", true});
   f.optional("stribeck", s.stribeck, "a higher level at rest");
   f.optional("bristle", s.bristle, "of lugre");
   f.optional("onset_speed", s.onset_speed, "of regularised: tanh(v / onset_speed)", Unit{"m/s", "rad/s"});
@@ -117,14 +132,15 @@ void describe(Fields& f, Friction<S>& s) {
 }
 
 /// g(v) of Friction.
-template <class S>
-S calcSlidingLevel(const Friction<S>& s, const S& speed) {
+template <class S, class Sum>
+S calcSlidingLevel(const Friction<S>& s, const S& speed, const Sum& sum) {
   using namespace program::real;
+  const S coulomb = sum.calc(s.coulomb);
   if (!s.stribeck) {
-    return s.coulomb;
+    return coulomb;
   }
   const S fall = exp(-calcPower(S(speed / s.stribeck->speed), s.stribeck->exponent));
-  return s.coulomb + (s.stribeck->level - s.coulomb) * fall;
+  return coulomb + (sum.calc(s.stribeck->level) - coulomb) * fall;
 }
 
 template <class S, class Sum>
@@ -132,8 +148,8 @@ void addForces(const Friction<S>& s, Sum& sum) {
   using namespace program::real;
   const S rate = sum.calcSlip(s.coordinate, s.against);
   const S v = s.surface_speed ? S(rate - *s.surface_speed) : rate;
-  const S speed = abs(v), level = calcSlidingLevel(s, speed);
-  S friction = s.viscous * v;
+  const S speed = abs(v), level = calcSlidingLevel(s, speed, sum);
+  S friction = sum.calc(s.viscous) * v;
   if (s.bristle) {
     const S& deflection = sum.getState(s.bristle->state);
     const S change = v - s.bristle->stiffness * speed * deflection / level;
@@ -149,7 +165,7 @@ void addForces(const Friction<S>& s, Sum& sum) {
 
 /// The level that it holds at rest.
 template <class S>
-const S& getStaticLevel(const Friction<S>& s) {
+const StateNumberOf<S>& getStaticLevel(const Friction<S>& s) {
   return s.stribeck ? s.stribeck->level : s.coulomb;
 }
 

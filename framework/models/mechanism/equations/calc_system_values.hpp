@@ -205,6 +205,7 @@ struct UncheckedNumbers {
   S calc(const Expression& expression, const std::string&, const char*, const char*) const {
     return names.calc(expression);
   }
+  bool knows(const Expression& expression) const { return usesOnly(names, expression); }
 };
 
 /// Evaluates all numbers of a system, with all conditions of its constraints, redundant ones too. `names`:
@@ -224,6 +225,9 @@ SystemValues<S> calcSystemValues(const SystemSpec& spec, const SystemNames& syst
                                     static_cast<int>(spec.states.size()));
   for (std::size_t i = 0; i < spec.constraints.size(); ++i) {
     addClosures(spec.constraints[i], static_cast<int>(i), system, names, values.closures);
+  }
+  for (const ArmatureSpec& one : spec.armature) {
+    values.armature.emplace_back(system.findForcedCoordinate(one.coordinate), names.calc(one.inertia));
   }
   values.state_count = static_cast<int>(system.getStateNames().size());
   return values;

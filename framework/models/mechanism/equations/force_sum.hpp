@@ -117,6 +117,9 @@ class ForceSum {
     return modes_ == nullptr || modes_->empty() ? less(S(0.0), depth) : (*modes_)[mode];
   }
   S calc(const Expression& expression) const { return named_.calc(expression); }
+  S calc(const StateNumber<S>& number) const {
+    return number.varying != nullptr ? named_.calc(*number.varying) : number.value;
+  }
   /// Components in ground axes.
   Vec3<S> calcInGround(const Expression3& components, ForceFrame frame, int body) const {
     const Vec3<S> value{calc(components[0]), calc(components[1]), calc(components[2])};

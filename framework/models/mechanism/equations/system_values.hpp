@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "framework/experiment/model/elements/force_elements.hpp"
@@ -49,7 +50,8 @@ struct SystemValues {
   Vec3<S> gravity;
   std::vector<BodyValues<S>> bodies;  ///< ground first
   ForceElements<S> elements;
-  std::vector<Closure<S>> closures;  ///< independent of each other
+  std::vector<Closure<S>> closures;         ///< independent of each other
+  std::vector<std::pair<int, S>> armature;  ///< coordinates and their own inertias
   int coordinate_count = 0;
   int state_count = 0;  ///< of first order
 };

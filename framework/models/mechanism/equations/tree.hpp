@@ -149,6 +149,10 @@ LinearSystem<S> calcEquationsOfMotion(const SystemValues<S>& system,
       addChild(composites[i], motions[i].pose.origin - motions[parent].pose.origin, composites[parent]);
     }
   }
+  for (const auto& [coordinate, inertia] : system.armature) {
+    S& own = equations.matrix[coordinate][coordinate];
+    own = own + inertia;
+  }
   return equations;
 }
 

@@ -10,16 +10,16 @@ const kTries = 3;
 export const kPatience = 900_000; // ms
 
 /** A browser; a start that fails, as it may where memory is short for a moment, is tried again. */
-export async function launchBrowser(tries = kTries) {
+export async function launchBrowser(tries = kTries, flags = kFlags) {
   try {
     return await chromium.launch({
-      executablePath: process.env.TWINMAP_CHROMIUM ?? '/usr/bin/chromium', args: kFlags, chromiumSandbox: false,
+      executablePath: process.env.TWINMAP_CHROMIUM ?? '/usr/bin/chromium', args: flags, chromiumSandbox: false,
       timeout: kPatience, handleSIGINT: true
     });
   } catch (error) {
     if (tries <= 1) throw error;
     console.error(`Chromium did not start, trying again: ${error.message}`);
-    return launchBrowser(tries - 1);
+    return launchBrowser(tries - 1, flags);
   }
 }
 

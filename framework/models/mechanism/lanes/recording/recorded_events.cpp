@@ -149,7 +149,7 @@ class EventRecorder {
 
   Symbol recordFrictionGuard(int k) const {
     const Symbol speed = calcSliding(k, state_.speeds), &mode = state_.modes[k];
-    const Symbol left = getStaticLevel(getFriction(k)) - abs(held_[k]);
+    const Symbol left = switched_.calcLevel(getStaticLevel(getFriction(k))) - abs(held_[k]);
     return select(equal(mode, Symbol(1.0)), speed, select(equal(mode, Symbol(-1.0)), -speed, left));
   }
 

@@ -26,6 +26,8 @@ struct SwitchedModel {
   double duration = 0.0;                         ///< of the simulation, s
   std::function<equations::ModelMotion<program::Symbol>(const equations::ModelState<program::Symbol>&)>
       calcMotion;
+  /// Of a level of friction, in the state.
+  std::function<program::Symbol(const StateNumber<program::Symbol>&)> calcLevel;
 };
 
 /// Behind an impact at the speed v towards a stop with restitution e the speed is e v away from it, and other

@@ -195,7 +195,8 @@ class ModelRecorder {
     recorded.events = recordEvents({system_, makeState(getFirstOrder()),
                                     getStates(hidden, static_cast<int>(recorded.derivatives.size()) - hidden),
                                     recorder_->phaseInput(input), model_.simulation.duration,
-                                    [this](const ModelState<Symbol>& state) { return calcMotion(state); }});
+                                    [this](const ModelState<Symbol>& state) { return calcMotion(state); },
+                                    [this](const StateNumber<Symbol>& level) { return calcLevel(level); }});
     recorded.events.input = input;
   }
 
@@ -235,6 +236,16 @@ class ModelRecorder {
     }
     state.modes = getModes();
     return state;
+  }
+
+  /// Of friction, in the recorder's state.
+  Symbol calcLevel(const StateNumber<Symbol>& level) {
+    if (level.varying == nullptr) {
+      return level.value;
+    }
+    const ModelState<Symbol> state = makeState(getFirstOrder());
+    const Symbols rates = equations::calcRates(system_, state.coordinates, state.speeds);
+    return equations::nameState(model_, names_, state, rates, values_).calc(*level.varying);
   }
 
   /// Time derivatives of signals, of the orders that are used.

@@ -1,0 +1,8 @@
+#pragma once
+
+namespace twinmap::robots {
+
+/// The Python program that compiles MJCF (compile_mjcf.py).
+const char* getMjcfCompiler();
+
+}  // namespace twinmap::robots

@@ -1,0 +1,194 @@
+#include "framework/view/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/models/make_simulator.hpp"
+#include "framework/models/mechanism/equations/calc_system_values.hpp"
+#include "framework/models/mechanism/equations/tree.hpp"
+#include "framework/models/mechanism/model_context.hpp"
+#include "kernels/linalg/decompositions.hpp"
+
+namespace twinmap::view {
+namespace {
+
+using equations::BodyValues;
+using equations::SystemValues;
+using Matrix = algebra::Mat33<double>;
+
+constexpr int kFrames = 201;
+
+Ellipsoid calcEllipsoid(const BodyValues<double>& body) {
+  Ellipsoid ellipsoid;
+  ellipsoid.frame.origin = body.center;
+  if (!(body.mass > 0.0)) {
+    return ellipsoid;
+  }
+  const Vector& c = body.center;
+  const Matrix own = body.inertia - algebra::scale(body.mass, algebra::makeDiagonal(algebra::dot(c, c)) -
+                                                                  algebra::outer(c, c));
+  Eigen::MatrixXd tensor(3, 3);
+  tensor << own.x.x, own.y.x, own.z.x, own.x.y, own.y.y, own.z.y, own.x.z, own.y.z, own.z.z;
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(tensor);
+  const auto column = [&](int i) {
+    return Vector{eigen.vectors(0, i), eigen.vectors(1, i), eigen.vectors(2, i)};
+  };
+  ellipsoid.frame.rotation = {column(0), column(1), algebra::cross(column(0), column(1))};
+  const double sum = eigen.values.sum();
+  const auto radius = [&](int i) {  // of an ellipsoid: I = m (b^2 + c^2) / 5 about a
+    const double square = 2.5 / body.mass * (sum - 2.0 * eigen.values[i]);
+    return square > 0.0 ? std::sqrt(square) : 0.0;
+  };
+  ellipsoid.radii = {radius(0), radius(1), radius(2)};
+  return ellipsoid;
+}
+
+void addBodies(const ModelSpec& model, const SystemValues<double>& values, Scene& scene) {
+  scene.bodies.emplace_back();
+  scene.bodies.back().name = "ground";
+  scene.bodies.back().has_mass = false;
+  for (std::size_t i = 1; i < values.bodies.size(); ++i) {
+    const BodyValues<double>& body = values.bodies[i];
+    const Vector axis = hasAxis(body.type) ? body.axis : Vector{};
+    scene.bodies.push_back({model.system.bodies[i - 1].name.text, body.parent, body.mass > 0.0,
+                            calcEllipsoid(body), getEnumText(body.type), body.in_parent, axis});
+  }
+}
+
+void addLines(const SystemValues<double>& values, Scene& scene) {
+  for (const auto& spring : values.elements.get<TwoPointSpring>()) {
+    scene.lines.push_back({"spring", spring.from.body, spring.to.body, spring.from.point, spring.to.point});
+  }
+  for (const auto& damper : values.elements.get<TwoPointDamper>()) {
+    scene.lines.push_back({"damper", damper.from.body, damper.to.body, damper.from.point, damper.to.point});
+  }
+  for (const auto& closure : values.closures) {
+    if (closure.kind == equations::ClosureKind::kRod) {
+      scene.lines.push_back(
+          {"rod", closure.from.body, closure.to.body, closure.from.point, closure.to.point});
+    }
+  }
+}
+
+void addMarks(const ModelSpec& model, const SystemNames& names, const NamedValues<double>& numbers,
+              const SystemValues<double>& values, Scene& scene) {
+  for (const auto& force : values.elements.get<AppliedForce>()) {
+    scene.marks.push_back({"force", "", force.station.body, force.station.point, {}});
+  }
+  for (const auto& contact : values.elements.get<Contact>()) {
+    scene.marks.push_back({"contact", "", contact.station.body, contact.station.point, {}});
+  }
+  for (const OutputSpec& output : model.outputs) {
+    const auto add = [&](const auto& at) {
+      if (at) {
+        scene.marks.push_back({"sensor", output.name.text, names.findBody(at->station.body),
+                               numbers.calc3(at->station.point), numbers.calc3(at->direction)});
+      }
+    };
+    add(output.position);
+    add(output.velocity);
+    add(output.acceleration);
+    add(output.specific_force);
+    add(output.angular_velocity);
+  }
+}
+
+/// All coordinates, then the experiment's outputs.
+ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coordinates) {
+  ModelSpec drawn = model;
+  std::vector<OutputSpec> outputs;
+  for (const std::string& coordinate : coordinates) {
+    OutputSpec output;
+    output.name = {"drawn " + coordinate, {}};
+    output.coordinate = Name{coordinate, {}};
+    outputs.push_back(output);
+  }
+  constexpr double kAnInstant = 1e-9;  // s: of what has modes alone, its beginning is drawn
+  drawn.simulation.duration = std::max(drawn.simulation.duration, kAnInstant);
+  drawn.outputs.insert(drawn.outputs.begin(), outputs.begin(), outputs.end());
+  return drawn;
+}
+
+Eigen::VectorXd makeTimes(const ModelSpec& model) {
+  const double duration = model.simulation.duration;
+  return duration > 0.0 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(kFrames, 0.0, duration))
+                        : Eigen::VectorXd(Eigen::VectorXd::Zero(1));
+}
+
+std::vector<Pose> calcPoses(const SystemValues<double>& values, const std::vector<double>& coordinates) {
+  const std::vector<double> still(coordinates.size(), 0.0);
+  std::vector<Pose> poses;
+  for (const auto& motion : equations::calcMotions(values, coordinates, still)) {
+    poses.push_back(motion.pose);
+  }
+  return poses;
+}
+
+/// A system's numbers at a point.
+struct PointValues {
+  PointValues(const ModelSpec& model, const Eigen::VectorXd& point) : names(model.system), numbers(model) {
+    numbers.update(point);
+    values = equations::calcSystemValues(model.system, names, numbers.getValues());
+  }
+
+  SystemNames names;
+  ModelNumbers numbers;
+  SystemValues<double> values;
+};
+
+}  // namespace
+
+void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion,
+               Scene& scene) {
+  const bool has_bodies = !experiment.model.source;
+  std::vector<std::string> coordinates;
+  std::optional<PointValues> at;
+  if (has_bodies) {
+    at.emplace(experiment.model, point);
+    coordinates = at->names.getCoordinateNames();
+  }
+  ModelSpec model = makeDrawn(experiment.model, coordinates);
+  const std::unique_ptr<Simulator> simulator = makeTrustedSimulator(model, scene.times);
+  const ResponseLayout& layout = simulator->getLayout();
+  Eigen::MatrixXd response(layout.getRowCount(), 1);
+  SampleStatus status;
+  simulator->simulate(Eigen::MatrixXd(point), response, &status);
+  if (!status.ok) {
+    throw std::runtime_error("the simulation failed: " + status.reason);
+  }
+  const Eigen::Index frames = scene.times.size(), n = static_cast<Eigen::Index>(coordinates.size());
+  for (Eigen::Index i = n; scene.motions.empty() && i < layout.getOutputCount(); ++i) {
+    scene.outputs.push_back({layout.output_names[i], layout.output_units[i]});
+  }
+  SceneMotion drawn{motion, {}, Eigen::MatrixXd(layout.getOutputCount() - n, frames)};
+  for (Eigen::Index output = n; output < layout.getOutputCount(); ++output) {
+    drawn.outputs.row(output - n) = response.col(0).segment(layout.getRow(output, 0), frames).transpose();
+  }
+  for (Eigen::Index frame = 0; has_bodies && frame < frames; ++frame) {
+    std::vector<double> q;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      q.push_back(response(layout.getRow(i, frame), 0));
+    }
+    drawn.poses.push_back(calcPoses(at->values, q));
+  }
+  scene.motions.push_back(std::move(drawn));
+}
+
+Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
+  const ModelSpec& model = experiment.model;
+  Scene scene;
+  scene.name = experiment.name.text;
+  scene.times = makeTimes(model);
+  if (!model.source) {
+    const PointValues at(model, point);
+    scene.gravity = at.values.gravity;
+    addBodies(model, at.values, scene);
+    addLines(at.values, scene);
+    addMarks(model, at.names, at.numbers.getValues(), at.values, scene);
+  }
+  addMotion(experiment, point, motion, scene);
+  return scene;
+}
+
+}  // namespace twinmap::view

@@ -1,0 +1,30 @@
+// Poses of bodies at any time: between two frames origins move straight and axes turn about one axis.
+import { Matrix4, Quaternion, Vector3 } from "three";
+
+const NUMBERS = 12; // of a pose: columns of the rotation, then the origin
+
+export function toMatrix(numbers, at = 0) {
+  const n = (i) => numbers[at + i];
+  return new Matrix4().set(n(0), n(3), n(6), n(9), n(1), n(4), n(7), n(10), n(2), n(5), n(8), n(11), 0, 0, 0, 1);
+}
+
+export function findFrame(times, time) {
+  let frame = 0;
+  while (frame + 2 < times.length && times[frame + 1] <= time) frame += 1;
+  const width = times.length > 1 ? times[frame + 1] - times[frame] : 1;
+  return { frame, share: times.length > 1 ? Math.min(Math.max((time - times[frame]) / width, 0), 1) : 0 };
+}
+
+export function setPose(object, motion, bodies, body, { frame, share }) {
+  const first = toMatrix(motion.poses, (frame * bodies + body) * NUMBERS);
+  const place = new Vector3(), turn = new Quaternion(), scale = new Vector3();
+  first.decompose(place, turn, scale);
+  if (share > 0) {
+    const nextPlace = new Vector3(), nextTurn = new Quaternion();
+    toMatrix(motion.poses, ((frame + 1) * bodies + body) * NUMBERS).decompose(nextPlace, nextTurn, scale);
+    place.lerp(nextPlace, share);
+    turn.slerp(nextTurn, share);
+  }
+  object.position.copy(place);
+  object.quaternion.copy(turn);
+}
