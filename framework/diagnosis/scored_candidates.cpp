@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/source_location.hpp"
@@ -294,7 +295,12 @@ FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& rec
     if (!followed) {
       break;
     }
-    FittedTerm further = fitWithin(experiment, recordings, *followed, score, point);
+    FittedTerm further;
+    try {
+      further = fitWithin(experiment, recordings, *followed, score, point);
+    } catch (const std::runtime_error&) {
+      break;  // such a scale cannot be simulated with its derivatives
+    }
     if (further.point.size() == 0 || !(further.chi_square < fitted.chi_square)) {
       break;
     }

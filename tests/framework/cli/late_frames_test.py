@@ -156,7 +156,8 @@ class LateFrames(FolderTestCase):
             estimate = stated["parameters"][name]
             self.assertLess(abs(estimate["mean"] - value), 4 * estimate["sd"], name)
             for one, other in zip(stated["trials"], silent["trials"]):
-                self.assertGreater(one["parameters"][name]["sd"], other["parameters"][name]["sd"], name)
+                of_noise = np.sqrt(other["parameters"][name]["sd"] ** 2 - silent["parameters"][name]["scatter"] ** 2)
+                self.assertGreater(one["parameters"][name]["sd"], of_noise, name)
         before = self.call("diagnose", path, *files)["before"]
         self.assertLess(before["chi_square"], before["degrees"] + 4 * np.sqrt(2 * before["degrees"]))
         predicted = self.call("validate", path, files[0], "--against", files[1])["predictions"][0]
