@@ -61,7 +61,7 @@ void send(int channel, const char* data, std::size_t size) {
 /// The worker's side of WorkerProcess: answers requests until the other side is gone. Should that happen
 /// while a request is worked on, a thread of its own ends this process and its group at once. `answer` may
 /// set `last` to end after its answer. Never returns: nothing of what the model has loaded runs after it.
-void serveFrames(const std::function<Frame(const Frame& request, bool& last)>& answer) {
+[[noreturn]] void serveFrames(const std::function<Frame(const Frame& request, bool& last)>& answer) {
   const int channel = fcntl(kWorkerChannel, F_DUPFD_CLOEXEC, kWorkerChannel + 1);
   close(kWorkerChannel);  // what the model starts does not inherit it
   std::thread(watch, channel).detach();
