@@ -9,8 +9,6 @@
 namespace twinmap {
 namespace {
 
-constexpr int kDigits = 4;
-
 std::string makeCondition(const GateSpec& gate) {
   std::string text = gate.min ? toText(*gate.min) + " \u2264 " : "";
   text += gate.metric.text;
@@ -24,7 +22,7 @@ bool isWithin(const GateSpec& gate, double value) {
 
 std::string makeFound(const CsvTable& metrics, std::size_t row, double value) {
   return metrics.getText(row, "parameter") + " " +
-         (std::isfinite(value) ? toShortText(value, kDigits) : "no value");
+         (std::isfinite(value) ? toShortText(value, kFigureDigits) : "no value");
 }
 
 /// "d_y 0.99; 3 of 4 values passed": what failed first, for many values that alone.

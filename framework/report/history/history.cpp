@@ -100,7 +100,6 @@ std::optional<std::vector<Course>> fitCourses(const History& history) {
 }
 
 std::string describeCourse(const History& history, std::size_t parameter, const Course& course) {
-  constexpr int kDigits = 6, kStddevDigits = 2;
   constexpr double kPercent = 100.0;
   const ParameterSpec& of = history.parameters[parameter];
   const std::string scatter = describeScatter(course, course.fitted.size());
@@ -109,16 +108,16 @@ std::string describeCourse(const History& history, std::size_t parameter, const 
         collectFigures(history, parameter, &HistoryPoint::stddev).cwiseAbs2().cwiseInverse();
     const double stddev = std::max(1.0, course.scatter) / std::sqrt(weights.sum());
     return fmt::format("{} is constant, {} (sd {}){}", of.name.text,
-                       withUnit(toShortText(course.fitted[0], kDigits), of.unit),
-                       toShortText(stddev, kStddevDigits), scatter);
+                       withUnit(toShortText(course.fitted[0], kEstimateDigits), of.unit),
+                       toShortText(stddev, kRoughDigits), scatter);
   }
   const double before = course.fitted[0];
   const std::string relative =
-      before == 0.0 ? "" : toShortText(kPercent * std::abs(course.change / before), kStddevDigits) + " %, ";
+      before == 0.0 ? "" : toShortText(kPercent * std::abs(course.change / before), kRoughDigits) + " %, ";
   const bool is_step = course.shape == CourseShape::kStep;
   return fmt::format("{} {} by {} ({}sd {}) {} {}{}{}", of.name.text, course.change > 0.0 ? "rose" : "fell",
-                     withUnit(toShortText(std::abs(course.change), kStddevDigits + 1), of.unit), relative,
-                     toShortText(course.change_stddev, kStddevDigits),
+                     withUnit(toShortText(std::abs(course.change), kRoughDigits + 1), of.unit), relative,
+                     toShortText(course.change_stddev, kRoughDigits),
                      is_step ? "at once, at" : "steadily, from", describePlace(history, course.begins),
                      is_step ? "" : " on", scatter);
 }

@@ -91,7 +91,6 @@ Section makeVerdict(const MeasurementReader& reader, const Replay& replay, const
 using Cells = std::vector<HtmlCell>;
 
 std::string makeParameterTable(const MeasurementReader& reader, const Replay& replay) {
-  constexpr int kStddevDigits = 3;
   const std::vector<ParameterSpec>& parameters = reader.getExperiment().model.parameters;
   const bool refined = replay.inferred.refined && replay.inferred.refined->isAccepted();
   const Estimate by_estimator =
@@ -127,7 +126,6 @@ std::string makeParameterTable(const MeasurementReader& reader, const Replay& re
 /// What follows from the parameters, and those that are determined where the others are not.
 std::string makeValueTable(const std::vector<ParameterSpec>& parameters,
                            const InferredMeasurement& inferred) {
-  constexpr int kStddevDigits = 3;
   const Estimate believed = selectEstimate(inferred);
   const StatedValues stated = stateValues(inferred, believed, parameters);
   std::vector<Cells> rows;
@@ -159,7 +157,6 @@ std::string makeValueTable(const std::vector<ParameterSpec>& parameters,
 }
 
 std::string makeNuisanceTable(const ModelSpec& model, const Replay& replay) {
-  constexpr int kStddevDigits = 3;
   const std::vector<DerivedValue> known = listNuisance(replay.inferred.posterior);
   std::vector<Cells> rows;
   for (std::size_t n = 0; n < model.nuisance.size(); ++n) {
