@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <stdexcept>
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/source_location.hpp"
@@ -232,29 +230,8 @@ ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const Recorde
   return scored;
 }
 
-namespace {
-
-/// The candidate about the ends of its scales' reach where a fit ended there; none where it did not. Limits
-/// are not sought beyond theirs.
-std::optional<TermCandidate> followScales(const TermCandidate& candidate, const VectorXd& point, Index p) {
-  constexpr double kNearEnd = 0.98;  // of the reach, in logarithms
-  TermCandidate followed = candidate;
-  bool is_moved = false;
-  for (std::size_t i = 0; i < candidate.own_scales.size(); ++i) {
-    OwnScale& scale = followed.own_scales[i];
-    const double found = point[p + 1 + static_cast<Index>(i)];
-    if (scale.reach > kReachOfLimits &&
-        std::abs(std::log(found / scale.value)) > kNearEnd * std::log(scale.reach)) {
-      scale.value = found;
-      is_moved = true;
-    }
-  }
-  return is_moved ? std::make_optional(std::move(followed)) : std::nullopt;
-}
-
-/// With its scales within their reach.
-FittedTerm fitWithin(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                     const TermCandidate& candidate, const TermScore& score, const VectorXd& point) {
+FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                   const TermCandidate& candidate, const TermScore& score, const VectorXd& point) {
   // far enough for a fit that the linear model underestimates; the posterior's bounds follow from its end
   constexpr double kAbove = 10.0, kStddevs = 20.0;
   const double largest =
@@ -278,34 +255,6 @@ FittedTerm fitWithin(const ExperimentSpec& experiment, const RecordedFeatures& r
   const double reach = std::abs(fitted.estimate) + kStddevs * fitted.stddev;
   if (reach < largest) {
     setBounds(static_cast<std::size_t>(p), {-reach, reach, {}}, fitted.augmented.experiment);
-  }
-  return fitted;
-}
-
-}  // namespace
-
-FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                   const TermCandidate& candidate, const TermScore& score, const VectorXd& point) {
-  constexpr int kMoves = 2;  // by a reach each: a scan and they are four decades and more
-  const auto p = static_cast<Index>(experiment.model.parameters.size());
-  FittedTerm fitted = fitWithin(experiment, recordings, candidate, score, point);
-  std::optional<TermCandidate> followed = candidate;
-  for (int moves = 1; moves <= kMoves && fitted.point.size() > 0; ++moves) {
-    followed = followScales(*followed, fitted.point, p);
-    if (!followed) {
-      break;
-    }
-    FittedTerm further;
-    try {
-      further = fitWithin(experiment, recordings, *followed, score, point);
-    } catch (const std::runtime_error&) {
-      break;  // such a scale cannot be simulated with its derivatives
-    }
-    if (further.point.size() == 0 || !(further.chi_square < fitted.chi_square)) {
-      break;
-    }
-    further.log_evidence_of_scales -= std::log(1.0 + moves);  // the prior is as much wider
-    fitted = std::move(further);
   }
   return fitted;
 }

@@ -53,8 +53,7 @@ LinearizedRecordings addScalePriors(const LinearizedRecordings& linear, Eigen::I
 double calcScalesEvidence(const LinearizedRecordings& linear, Eigen::Index first,
                           const TermCandidate& candidate, const Eigen::VectorXd& point);
 
-/// Searches from `point` (u) without the term and with its score's estimate; its own scales beyond their
-/// reach too where that is where a fit ends.
+/// Searches from `point` (u) without the term and with its score's estimate.
 FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const TermCandidate& candidate, const TermScore& score, const Eigen::VectorXd& point);
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <set>
 
 #include "framework/base/text/source_location.hpp"
@@ -201,21 +200,6 @@ TEST(BlindSpots, SayWhatIsNoticed) {
     }
   }
   EXPECT_NE(makeBlindSpotTable(spots, experiment.model.parameters).find("never"), std::string::npos);
-}
-
-TEST(FittedTerm, FindsItsScaleBeyondTheReachOfAScan) {
-  const ExperimentSpec experiment = loadExperiment(kCart);
-  const RecordedFeatures recordings{makeLayout(experiment), {measureCart(kWithFriction)}, {}};
-  const ScoredCandidates scored = scoreCandidates(experiment, recordings, kTrueCart);
-  std::size_t i = 0;
-  while (scored.candidates[i].term != "coulomb.x") {
-    ++i;
-  }
-  TermCandidate far = scored.candidates[i];
-  far.own_scales.front().value = 0.01 * 8.0;  // of tanh(x_dot / 0.01); its reach is 5
-  const FittedTerm fitted = fitTerm(experiment, recordings, far, scored.scores[i], kTrueCart);
-  EXPECT_NEAR(std::log(fitted.point[4] / 0.01), 0.0, 0.5);
-  EXPECT_NEAR(fitted.estimate, 0.03, 0.005);
 }
 
 }  // namespace
