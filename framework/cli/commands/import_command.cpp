@@ -7,8 +7,7 @@
 #include "framework/experiment/column_spec.hpp"
 #include "framework/experiment/expression/units.hpp"
 #include "framework/robots/experiment_text.hpp"
-#include "framework/robots/mjcf/read_mjcf.hpp"
-#include "framework/robots/urdf/read_urdf.hpp"
+#include "framework/robots/formats/robot_file.hpp"
 
 namespace twinmap::cli {
 
@@ -43,10 +42,9 @@ robots::Recording readRecording(const std::string& file) {
 
 void importRobot(const ImportArguments& arguments) {
   const robots::XmlFile file(arguments.file);
-  const bool is_mjcf = std::string(file.getRoot().name()) == "mujoco";
-  robots::Robot robot = is_mjcf ? robots::readMjcf(file) : robots::readUrdf(file);
+  robots::Robot robot = robots::readRobot(file);
   robots::ImportOptions options;
-  if (is_mjcf && arguments.base == "free") {
+  if (robots::isMjcf(file) && arguments.base == "free") {
     throw ExperimentError("--base is of a URDF: an MJCF says itself which bodies are free (freejoint)");
   }
   options.base = arguments.base == "free" ? robots::Base::kFree : robots::Base::kFixed;

@@ -121,23 +121,18 @@ void addReplay(CLI::App& app, const Invocation& invocation) {
 }
 
 void addRobotExport(CLI::App& command, RobotExportArguments& arguments) {
-  CLI::Option* urdf = command.add_option(
-      "--urdf,--mjcf", arguments.robot,
-      "URDF or MJCF that the experiment was imported from: written with what was estimated");
-  urdf->type_name("FILE");
-  command
-      .add_option("MEASUREMENT", arguments.measurement,
-                  "Of --urdf and --mjcf: file to estimate from, as infer takes it")
-      ->option_text(" ");
-  command.add_option("--start", arguments.start, "Time in the file (s) at which the model's time is 0")
-      ->type_name("S")
+  CLI::Option* urdf =
+      addOption(command, "--urdf,--mjcf", "FILE", arguments.robot,
+                "URDF or MJCF that the experiment was imported from: written with what was estimated");
+  addArgument(command, "MEASUREMENT", arguments.measurement,
+              "Of --urdf and --mjcf: file to estimate from, as infer takes it")
+      ->required(false);
+  addOption(command, "--start", "S", arguments.start, "Time in the file (s) at which the model's time is 0")
       ->needs(urdf);
-  command.add_option("--set", arguments.known, "Value of a known input of the set-up; for each of them")
-      ->type_name("NAME=VALUE")
-      ->needs(urdf);
-  command
-      .add_option("--out", arguments.out, "File for the URDF or MJCF; values and sds go beside it, as JSON")
-      ->type_name("FILE")
+  addKnown(command, arguments.known);
+  command.get_option("--set")->needs(urdf);
+  addOption(command, "--out", "FILE", arguments.out,
+            "File for the URDF or MJCF; values and sds go beside it, as JSON")
       ->needs(urdf);
   command.add_flag("--anyway", arguments.anyway, "Also of an estimate that is not ok")->needs(urdf);
   command

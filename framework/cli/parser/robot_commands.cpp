@@ -3,6 +3,7 @@
 
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/parser/command_groups.hpp"
+#include "framework/cli/parser/shared_options.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -12,32 +13,23 @@ void addImport(CLI::App& app) {
   CLI::App* command = app.add_subcommand("import", "Make an experiment file of a robot (URDF, MJCF)");
   command->footer(
       "Prints the experiment file: bodies, joints, friction, mimic joints, a signal for the force of each "
-      "joint. "
-      "What it leaves out stands at its head and on stderr, with lines and what it would have done.");
-  command->add_option("FILE", arguments->file, "URDF, or MJCF, which Python's package mujoco compiles")
-      ->required()
-      ->option_text(" ");
-  command
-      ->add_option("--base", arguments->base, "Of the first link of a URDF: fixed or free (default: fixed)")
-      ->type_name("HOW")
+      "joint. What it leaves out stands at its head and on stderr, with lines and what it would have done.");
+  addArgument(*command, "FILE", arguments->file, "URDF, or MJCF, which Python's package mujoco compiles");
+  addOption(*command, "--base", "HOW", arguments->base,
+            "Of the first link of a URDF: fixed or free (default: fixed)")
       ->check(CLI::IsMember({"fixed", "free"}));
-  command
-      ->add_option("--parameters", arguments->parameters,
-                   "What to estimate: inertia, friction, armature, damping; priors of 20 % about the file's "
-                   "values (default: gravity alone)")
-      ->type_name("KIND,...")
+  addOption(*command, "--parameters", "KIND,...", arguments->parameters,
+            "What to estimate: inertia, friction, armature, damping; priors of 20 % about the file's values "
+            "(default: gravity alone)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command->add_option("--joints", arguments->joints, "Joints that move; others stay at 0 (default: all move)")
-      ->type_name("NAME,...")
+  addOption(*command, "--joints", "NAME,...", arguments->joints,
+            "Joints that move; others stay at 0 (default: all move)")
       ->delimiter(',')
       ->allow_extra_args(false);
-  command
-      ->add_option(
-          "--csv", arguments->csv,
-          "Recording whose columns are called as coordinates (angles, in 'deg' too) and signals: they "
-          "become the measurement and the excitation")
-      ->type_name("FILE");
+  addOption(*command, "--csv", "FILE", arguments->csv,
+            "Recording whose columns are called as coordinates (angles, in 'deg' too) and signals: they "
+            "become the measurement and the excitation");
   command->add_flag("--stops", arguments->stops, "Rigid stops, without rebound, at the joints' limits");
   command->add_flag("--strict", arguments->strict, "Fail where anything is left out");
   command->callback([arguments] { importRobot(*arguments); });
@@ -48,25 +40,17 @@ void addView(CLI::App& app) {
   CLI::App* command = app.add_subcommand("view", "Draw the mechanism, and let it move");
   command->footer(
       "Writes one page (HTML, three.js) that needs no network: bodies, joints with axes, springs, sensors, "
-      "moving "
-      "as the nominal model does and, with a measurement, the updated one; outputs over time. Without WebGL, "
-      "and "
-      "in print, it shows the picture.");
-  command->add_option("FILE", arguments->experiment.file, "Experiment file, or folder of a finished run")
-      ->required()
-      ->option_text(" ");
-  command
-      ->add_option("MEASUREMENT", arguments->measurement,
-                   "File that the updated model is inferred from, as infer takes it")
-      ->option_text(" ");
-  command->add_option("--start", arguments->start, "Time in the file (s) at which the model's time is 0")
-      ->type_name("S");
-  command->add_option("--set", arguments->known, "Value of a known input of the set-up; for each of them")
-      ->type_name("NAME=VALUE");
-  command->add_option("--out", arguments->out, "File for the page (default: the experiment's name)")
-      ->type_name("FILE");
-  command->add_option("--svg", arguments->svg, "File for a static picture instead, or beside --out")
-      ->type_name("FILE");
+      "moving as the nominal model does and, with a measurement, the updated one; outputs over time. Without "
+      "WebGL, and in print, it shows the picture.");
+  addArgument(*command, "FILE", arguments->experiment.file, "Experiment file, or folder of a finished run");
+  addArgument(*command, "MEASUREMENT", arguments->measurement,
+              "File that the updated model is inferred from, as infer takes it")
+      ->required(false);
+  addOption(*command, "--start", "S", arguments->start,
+            "Time in the file (s) at which the model's time is 0");
+  addKnown(*command, arguments->known);
+  addOption(*command, "--out", "FILE", arguments->out, "File for the page (default: the experiment's name)");
+  addOption(*command, "--svg", "FILE", arguments->svg, "File for a static picture instead, or beside --out");
   command->callback([arguments] { view(*arguments); });
 }
 

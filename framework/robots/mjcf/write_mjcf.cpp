@@ -10,20 +10,12 @@ namespace twinmap::robots {
 namespace {
 
 /// As MuJoCo's fullinertia has them.
-std::vector<double> listEntries(const Matrix& m) {
+std::vector<double> listFullInertia(const Matrix& m) {
   return {m.x.x, m.y.y, m.z.z, m.y.x, m.z.x, m.z.y};
 }
 
 std::vector<double> list(const Vector& v) {
   return {v.x, v.y, v.z};
-}
-
-std::string join(const std::vector<double>& numbers) {
-  std::string text;
-  for (const double number : numbers) {
-    text += (text.empty() ? "" : " ") + toText(number);
-  }
-  return text;
 }
 
 class MjcfWriter {
@@ -63,14 +55,14 @@ class MjcfWriter {
     const pugi::xml_node inertial = body.child("inertial");
     if (!inertial) {
       requireOwnInertia();
-      edits_.addElement(body, "<inertial pos=\"" + join(list(mass.center)) + "\" mass=\"" +
-                                  toText(mass.mass) + "\" fullinertia=\"" + join(listEntries(mass.tensor)) +
-                                  "\"/>");
+      edits_.addElement(body, "<inertial pos=\"" + joinNumbers(list(mass.center)) + "\" mass=\"" +
+                                  toText(mass.mass) + "\" fullinertia=\"" +
+                                  joinNumbers(listFullInertia(mass.tensor)) + "\"/>");
       return;
     }
     edits_.setNumbers(inertial, "mass", {old.mass}, {mass.mass});
     edits_.setNumbers(inertial, "pos", list(old.center), list(mass.center));
-    writeTensor(inertial, listEntries(old.tensor), listEntries(mass.tensor));
+    writeTensor(inertial, listFullInertia(old.tensor), listFullInertia(mass.tensor));
   }
 
   /// In the body's axes, so that whatever turns those of the file goes.

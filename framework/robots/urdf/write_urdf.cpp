@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kEntries[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
 
-std::vector<double> listEntries(const Matrix& m) {
+std::vector<double> listUrdfEntries(const Matrix& m) {
   return {m.x.x, m.y.x, m.z.x, m.y.y, m.z.y, m.z.z};
 }
 
@@ -40,8 +40,8 @@ class UrdfWriter {
     edits_.setNumbers(node.child("mass"), "value", {old.mass}, {mass.mass});
     writeCenter(node, old.frame.origin, mass.center);
     const Matrix& turn = old.frame.rotation;
-    const std::vector<double> before = listEntries(old.tensor);
-    const std::vector<double> after = listEntries(algebra::transpose(turn) * mass.tensor * turn);
+    const std::vector<double> before = listUrdfEntries(old.tensor);
+    const std::vector<double> after = listUrdfEntries(algebra::transpose(turn) * mass.tensor * turn);
     constexpr double kRounding =
         1e-12;  // of the largest entry: what spreads and turned axes leave of a tensor
     const double largest = std::max({std::abs(before[0]), std::abs(before[3]), std::abs(before[5])});

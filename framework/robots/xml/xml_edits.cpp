@@ -14,15 +14,15 @@ bool differ(const std::vector<double>& a, const std::vector<double>& b) {
   return !std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
 
-std::string join(const std::vector<double>& numbers) {
+}  // namespace
+
+std::string joinNumbers(const std::vector<double>& numbers) {
   std::string text;
   for (const double number : numbers) {
     text += (text.empty() ? "" : " ") + toText(number);
   }
   return text;
 }
-
-}  // namespace
 
 void XmlEdits::setNumbers(const pugi::xml_node& node, const char* attribute, const std::vector<double>& old,
                           const std::vector<double>& numbers) {
@@ -36,7 +36,7 @@ void XmlEdits::setNumbers(const pugi::xml_node& node, const char* attribute, con
     return;
   }
   const std::size_t name_end = file_.getText().find_first_of(std::string(kSpaces) + "/>", tag.begin);
-  edits_.push_back({name_end, 0, " " + std::string(attribute) + "=\"" + join(numbers) + "\""});
+  edits_.push_back({name_end, 0, " " + std::string(attribute) + "=\"" + joinNumbers(numbers) + "\""});
 }
 
 void XmlEdits::removeAttribute(const pugi::xml_node& node, const char* attribute) {

@@ -7,6 +7,9 @@
 
 namespace twinmap::robots {
 
+/// As attributes have several numbers: apart by spaces, with all digits.
+std::string joinNumbers(const std::vector<double>& numbers);
+
 /// Changes of numbers in an XML file, each at its place: all other bytes stay as they are.
 class XmlEdits {
  public:

@@ -7,25 +7,14 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/infer_estimate.hpp"
-#include "framework/robots/mjcf/read_mjcf.hpp"
-#include "framework/robots/mjcf/write_mjcf.hpp"
-#include "framework/robots/urdf/read_urdf.hpp"
-#include "framework/robots/urdf/write_urdf.hpp"
+#include "framework/robots/estimate_file.hpp"
+#include "framework/robots/formats/robot_file.hpp"
 
 namespace twinmap::cli {
 namespace {
 
 namespace fs = std::filesystem;
 using robots::RobotEstimate;
-
-bool isMjcf(const robots::XmlFile& file) {
-  return std::string(file.getRoot().name()) == "mujoco";
-}
-
-std::string writeRobot(const robots::XmlFile& file, const robots::Robot& robot,
-                       const robots::RobotValues& values) {
-  return isMjcf(file) ? robots::writeMjcf(file, robot, values) : robots::writeUrdf(file, robot, values);
-}
 
 /// Draws until so many robots that exist are written: those beyond a physical limit are drawn again.
 void writeDraws(const robots::XmlFile& file, const robots::Robot& robot, const RobotEstimate& estimate,
@@ -45,8 +34,8 @@ void writeDraws(const robots::XmlFile& file, const robots::Robot& robot, const R
     if (!placed.exist) {
       continue;
     }
-    const std::string name = fmt::format("{:05}{}", ++written, isMjcf(file) ? ".xml" : ".urdf");
-    writeTextFile(folder / name, writeRobot(file, robot, placed));
+    const std::string name = fmt::format("{:05}{}", ++written, robots::isMjcf(file) ? ".xml" : ".urdf");
+    writeTextFile(folder / name, robots::writeRobot(file, robot, placed));
     csv += "\n" + name;
     for (const std::string& parameter : estimate.names) {
       csv += "," + toText(values.at(parameter));
@@ -69,7 +58,7 @@ void exportRobot(const RobotExportArguments& arguments) {
     throw ExperimentError("export --urdf: give --out FILE or --draws N DIR");
   }
   const robots::XmlFile file(arguments.robot);
-  const robots::Robot robot = isMjcf(file) ? robots::readMjcf(file) : robots::readUrdf(file);
+  const robots::Robot robot = robots::readRobot(file);
   const RobotEstimate estimate =
       arguments.measurement.empty()
           ? robots::readEstimate(readBytes(arguments.estimate), arguments.estimate)
@@ -85,7 +74,7 @@ void exportRobot(const RobotExportArguments& arguments) {
   }
   if (!arguments.out.empty()) {
     const fs::path json = fs::path(arguments.out).replace_extension(".json");
-    writeTextFile(arguments.out, writeRobot(file, robot, values));
+    writeTextFile(arguments.out, robots::writeRobot(file, robot, values));
     writeTextFile(json, robots::makeUpdateJson(estimate, values.without_place));
     std::cout << fmt::format("{}: {} with what was estimated; values and sds: {}\n", arguments.out,
                              arguments.robot, json.string());
