@@ -3,11 +3,11 @@
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/robot_file.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/experiment/column_spec.hpp"
 #include "framework/experiment/expression/units.hpp"
 #include "framework/robots/experiment_text.hpp"
-#include "framework/robots/formats/robot_file.hpp"
 
 namespace twinmap::cli {
 
@@ -42,9 +42,9 @@ robots::Recording readRecording(const std::string& file) {
 
 void importRobot(const ImportArguments& arguments) {
   const robots::XmlFile file(arguments.file);
-  robots::Robot robot = robots::readRobot(file);
+  robots::Robot robot = readRobot(file);
   robots::ImportOptions options;
-  if (robots::isMjcf(file) && arguments.base == "free") {
+  if (isMjcf(file) && arguments.base == "free") {
     throw ExperimentError("--base is of a URDF: an MJCF says itself which bodies are free (freejoint)");
   }
   options.base = arguments.base == "free" ? robots::Base::kFree : robots::Base::kFixed;

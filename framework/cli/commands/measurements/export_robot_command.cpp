@@ -7,8 +7,8 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/infer_estimate.hpp"
+#include "framework/cli/commands/robot_file.hpp"
 #include "framework/robots/estimate_file.hpp"
-#include "framework/robots/formats/robot_file.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -34,8 +34,8 @@ void writeDraws(const robots::XmlFile& file, const robots::Robot& robot, const R
     if (!placed.exist) {
       continue;
     }
-    const std::string name = fmt::format("{:05}{}", ++written, robots::isMjcf(file) ? ".xml" : ".urdf");
-    writeTextFile(folder / name, robots::writeRobot(file, robot, placed));
+    const std::string name = fmt::format("{:05}{}", ++written, isMjcf(file) ? ".xml" : ".urdf");
+    writeTextFile(folder / name, writeRobot(file, robot, placed));
     csv += "\n" + name;
     for (const std::string& parameter : estimate.names) {
       csv += "," + toText(values.at(parameter));
@@ -58,7 +58,7 @@ void exportRobot(const RobotExportArguments& arguments) {
     throw ExperimentError("export --urdf: give --out FILE or --draws N DIR");
   }
   const robots::XmlFile file(arguments.robot);
-  const robots::Robot robot = robots::readRobot(file);
+  const robots::Robot robot = readRobot(file);
   const RobotEstimate estimate =
       arguments.measurement.empty()
           ? robots::readEstimate(readBytes(arguments.estimate), arguments.estimate)
@@ -74,7 +74,7 @@ void exportRobot(const RobotExportArguments& arguments) {
   }
   if (!arguments.out.empty()) {
     const fs::path json = fs::path(arguments.out).replace_extension(".json");
-    writeTextFile(arguments.out, robots::writeRobot(file, robot, values));
+    writeTextFile(arguments.out, writeRobot(file, robot, values));
     writeTextFile(json, robots::makeUpdateJson(estimate, values.without_place));
     std::cout << fmt::format("{}: {} with what was estimated; values and sds: {}\n", arguments.out,
                              arguments.robot, json.string());
