@@ -39,6 +39,9 @@ constexpr double kMostOfMisfit = 0.9;
 /// Chi-square a residual that sensors and units make, missing physics rarely, and what of it is left by that
 /// which explains it.
 constexpr double kGrossMisfit = 100.0, kRestOfGross = 0.01;
+/// Of a gross misfit: where an iteration takes less, all that a search has left would not explain it. 25 of
+/// them take a fifth.
+constexpr double kCreeping = 0.01;
 /// Draws that stand for a posterior where each is simulated with derivatives.
 constexpr Eigen::Index kStandingDraws = 32;
 

@@ -159,6 +159,10 @@ bool SimulatorFit::isAsStated() const {
   return outliers.empty() && noise.empty();
 }
 
+bool SimulatorFit::isGross() const {
+  return chi_square > kGrossMisfit * degrees;
+}
+
 double SimulatorFit::getNoiseFactor() const {
   double factor = 1.0, largest = 0.0;
   for (const NoiseReport& report : noise) {

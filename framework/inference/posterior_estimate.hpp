@@ -52,6 +52,8 @@ struct SimulatorFit {
   bool isTested() const { return residual.size() > 0 || !isSimulated(); }
   /// Whether the noise was supposed to be as it is stated.
   bool isAsStated() const;
+  /// What is left is so much that no noise is taken for it (kGrossMisfit).
+  bool isGross() const;
   /// Of the noise over that stated, of the output where it differs most; 1 where it does nowhere.
   double getNoiseFactor() const;
   bool isColoured() const;

@@ -93,30 +93,44 @@ SampledMeasurement SimulatorSampler::sampleAsStated(const VectorXd& features, co
 SampledMeasurement SimulatorSampler::samplePosterior(const VectorXd& features, const VectorXd& known,
                                                      const NoiseHypothesis& stated, const MatrixXd& given,
                                                      const SimulatorPosteriorOptions& options) const {
-  SimulatorPosteriorOptions sparing = options;
-  sparing.spares_misfit = readsOutputs();
-  SampledMeasurement sampled = sampleAsStated(features, known, stated, given, sparing);
+  return explainByNoise(sampleAsStated(features, known, stated, given, spareMisfit(options)), features, known,
+                        stated, options);
+}
+
+SampledMeasurement SimulatorSampler::explainByNoise(SampledMeasurement sampled, const VectorXd& features,
+                                                    const VectorXd& known, const NoiseHypothesis& stated,
+                                                    const SimulatorPosteriorOptions& options) const {
   const SimulatorFit& fit = *sampled.estimate.fit;
   if (!fit.isSimulated() || fit.isPlausible() || !readsOutputs()) {
     return sampled;
   }
   std::vector<NoiseHypothesis> others = listNoise(stated, features, known, fit.best);
-  if (fit.chi_square > kGrossMisfit * fit.degrees) {  // no noise is so large, but a few samples may be off
-    sparing = searchNearby(sparing);
+  SimulatorPosteriorOptions sparing = searchNearby(spareMisfit(options));
+  sparing.search.settles = true;  // a hypothesis whose best fit it does not explain is none
+  if (fit.isGross()) {            // no noise is so large, but a few samples may be off
     others.erase(std::remove_if(others.begin(), others.end(),
                                 [](const NoiseHypothesis& noise) {
                                   return noise.has_outliers && !noise.outputs.empty();
                                 }),
                  others.end());
   }
+  sparing.wants_draws = [&](const SimulatorPosterior& found) {
+    return explains(*makeEstimate(makeTrial(features, known), found).fit, fit.residual.size());
+  };
   for (const NoiseHypothesis& noise : others) {
     SampledMeasurement other = sampleUnder(noise, features, known, fit.best, sparing);
-    if (other.estimate.isReliable() && explains(*other.estimate.fit, fit.residual.size())) {
+    if (other.estimate.isReliable()) {
       return other;
     }
   }
-  const bool was_spared = !sampled.estimate.isReliable() && !sampled.posterior.isExplained();
-  return was_spared ? sampleAsStated(features, known, stated, fit.best, options) : sampled;
+  const bool was_spared =
+      !sampled.estimate.isReliable() && !sampled.posterior.isExplained() && !fit.isGross();
+  return was_spared ? sampleAsStated(features, known, stated, fit.best, searchNearby(options)) : sampled;
+}
+
+SimulatorPosteriorOptions SimulatorSampler::spareMisfit(SimulatorPosteriorOptions options) const {
+  options.spares_misfit = readsOutputs();
+  return options;
 }
 
 double SimulatorSampler::findLeastChiSquare(const VectorXd& features, const VectorXd& known,
@@ -125,11 +139,16 @@ double SimulatorSampler::findLeastChiSquare(const VectorXd& features, const Vect
   if (2.0 * there <= of) {
     return std::numeric_limits<double>::infinity();
   }
-  return of / there *
-         twinmap::findLeastChiSquare({getUnknown(),
-                                      getModelSpec().priors,
-                                      {makeTrial(features, known)},
-                                      static_cast<Index>(getUnknown().size())});
+  return of / there * findLeastMisfit(features, known).chi_square;
+}
+
+LeastMisfit SimulatorSampler::findLeastMisfit(const VectorXd& features, const VectorXd& known,
+                                              const MatrixXd& given) const {
+  return twinmap::findLeastMisfit({getUnknown(),
+                                   getModelSpec().priors,
+                                   {makeTrial(features, known)},
+                                   static_cast<Index>(getUnknown().size())},
+                                  given);
 }
 
 PosteriorEstimate SimulatorSampler::makeEstimate(const MeasuredTrial& trial,

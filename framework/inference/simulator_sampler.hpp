@@ -59,6 +59,14 @@ class SimulatorSampler : public MeasuredSimulator {
                                      const NoiseHypothesis& stated, const Eigen::MatrixXd& given,
                                      const SimulatorPosteriorOptions& options) const;
 
+  /// The second half of samplePosterior(): of one that the stated noise leaves unexplained, under another
+  /// that explains it, if there is one.
+  SampledMeasurement explainByNoise(SampledMeasurement sampled, const Eigen::VectorXd& features,
+                                    const Eigen::VectorXd& known, const NoiseHypothesis& stated,
+                                    const SimulatorPosteriorOptions& options) const;
+  /// Where the posterior may be given up that nothing explains.
+  SimulatorPosteriorOptions spareMisfit(SimulatorPosteriorOptions options) const;
+
   /// The posterior of a trial alone as an estimate, its residual in the places of the features that are
   /// there.
   PosteriorEstimate makeEstimate(const MeasuredTrial& trial, SimulatorPosterior posterior) const;
@@ -76,8 +84,11 @@ class SimulatorSampler : public MeasuredSimulator {
                                                  const Eigen::VectorXd& known,
                                                  const Eigen::VectorXd& best) const;
 
-  /// The least chi-square of few searches (twinmap::findLeastChiSquare), to compare gross misfits; in
-  /// proportion where only some of `all` features are there, infinite where half are missing.
+  /// Few searches (twinmap::findLeastMisfit).
+  LeastMisfit findLeastMisfit(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
+                              const Eigen::MatrixXd& given = {}) const;
+  /// The least chi-square of the same, to compare gross misfits; in proportion where only some of `all`
+  /// features are there, infinite where half are missing.
   double findLeastChiSquare(const Eigen::VectorXd& features, const Eigen::VectorXd& known,
                             Eigen::Index all) const;
 

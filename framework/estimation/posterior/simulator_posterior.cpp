@@ -1,7 +1,6 @@
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "framework/base/log/search_stage.hpp"
@@ -23,19 +22,6 @@ using importance::AdaptiveDraws;
 
 namespace {
 
-void setBest(const BasinSearch& found, const LogCoordinates& coordinates, SimulatorPosterior& posterior) {
-  const Basin& best = found.basins.front();
-  posterior.best = coordinates.toParameters(best.local.at);
-  posterior.beyond = findBeyondBounds(best.local);
-  posterior.chi_square = best.local.chi_square;
-  posterior.misfit = best.local.misfit;
-  posterior.information = best.local.information;
-  posterior.residual = best.local.residual;
-  posterior.residual_weights = best.local.weights;
-  posterior.degrees = best.local.degrees;
-  posterior.found_best = best.searches;
-}
-
 /// Of a single measurement, the residual as its hypothesis of the noise explains it.
 ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTrial& trial,
                                        const LocalSurface& best) {
@@ -49,6 +35,24 @@ ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTri
   }
   return ResidualLoss(trial.noise, *trial.model, trial.model->getWhole())
       .standardize(best.residual, jacobian, best.degrees);
+}
+
+void setBest(const BasinSearch& found, const PosteriorProblem& problem, MisfitSurface& surface,
+             SimulatorPosterior& posterior) {
+  const Basin& best = found.basins.front();
+  posterior.best = surface.getCoordinates().toParameters(best.local.at);
+  posterior.beyond = findBeyondBounds(best.local);
+  posterior.chi_square = best.local.chi_square;
+  posterior.misfit = best.local.misfit;
+  posterior.information = best.local.information;
+  posterior.residual = best.local.residual;
+  posterior.residual_weights = best.local.weights;
+  posterior.degrees = best.local.degrees;
+  posterior.found_best = best.searches;
+  if (problem.trials.size() == 1) {
+    posterior.standardized = standardize(surface, problem.trials.front(), best.local);
+  }
+  posterior.message = "not drawn from";
 }
 
 /// Moments, draws and modes, of the first parameters, as many as `coordinates` has.
@@ -128,9 +132,9 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   }
   stage.reset();
   stage.emplace("draw from the posterior");
-  setBest(found, coordinates, posterior);
-  if (problem.trials.size() == 1) {
-    posterior.standardized = standardize(surface, problem.trials.front(), found.basins.front().local);
+  setBest(found, problem, surface, posterior);
+  if (options.wants_draws && !options.wants_draws(posterior)) {
+    return posterior;
   }
   std::optional<Sampling> linear;
   if (options.is_linear && problem.drawn > kManyUnknown) {
@@ -170,7 +174,7 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
   return samplePosterior(problem, given, options);
 }
 
-double findLeastChiSquare(const PosteriorProblem& problem) {
+LeastMisfit findLeastMisfit(const PosteriorProblem& problem, const MatrixXd& given) {
   constexpr int kPoints = 32, kSearches = 3;
   ProblemSurface whole(problem);
   MisfitSurface& surface = whole.upd();
@@ -182,13 +186,20 @@ double findLeastChiSquare(const PosteriorProblem& problem) {
     return std::isfinite(misfits[a]) && !(misfits[a] >= misfits[b]);
   });
   order.resize(kSearches);
-  SearchTeam team(surface, points(Eigen::all, order));
-  team.run(BasinSearchOptions{}.max_iterations);
-  double least = std::numeric_limits<double>::infinity();
-  for (const LocalSurface& end : team.listEnds()) {
-    least = std::min(least, end.chi_square);
+  MatrixXd starts(points.rows(), kSearches + given.cols());
+  starts.leftCols(kSearches) = points(Eigen::all, order);
+  if (given.cols() > 0) {
+    starts.rightCols(given.cols()) = toCoordinates(whole.getCoordinates(), given);
   }
-  return least;
+  SearchTeam team(surface, starts);
+  team.run(BasinSearchOptions{}.max_iterations);
+  LeastMisfit best;
+  for (const LocalSurface& end : team.listEnds()) {
+    if (end.chi_square < best.chi_square) {
+      best = {end.chi_square, whole.getCoordinates().toParameters(end.at)};
+    }
+  }
+  return best;
 }
 
 }  // namespace twinmap

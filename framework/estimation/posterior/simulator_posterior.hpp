@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -67,6 +69,9 @@ struct SimulatorPosteriorOptions : PosteriorDrawOptions {
   /// Whether draws that mixtures about the basins do not give are not sought by sums and walks where noise
   /// does not explain the best point: they would be of a wrong model.
   bool spares_misfit = false;
+  /// Whether draws are wanted of what the search found (no draws are there yet); default: they are. Not
+  /// reliable where they are not.
+  std::function<bool(const SimulatorPosterior&)> wants_draws{};
   /// Of more than kManyUnknown: whether draws are those of a linear response about the best fit, within the
   /// prior and the bounds, without a simulation of any, where that does (sampleLinearModel).
   bool is_linear = false;
@@ -88,9 +93,15 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
                                    const Eigen::VectorXd& held, const Eigen::MatrixXd& given,
                                    const SimulatorPosteriorOptions& options);
 
-/// The least chi-square that three searches find, from the best of 32 points all over the bounds; infinite
-/// where none of them could be simulated. To compare gross misfits: no test of other basins. Cost: 32
-/// simulations and some 10 a search, 5 of them with derivatives.
-double findLeastChiSquare(const PosteriorProblem& problem);
+/// Where few searches end best; an infinite chi-square and no point where none could be simulated.
+struct LeastMisfit {
+  double chi_square = std::numeric_limits<double>::infinity();
+  Eigen::VectorXd best{};  ///< all unknown parameters (u)
+};
+
+/// The best that three searches find, from the best of 32 points all over the bounds, and one from each given
+/// point (u x n, may be empty). To compare gross misfits: no test of other basins. Cost: 32 simulations and
+/// some 10 a search, 5 of them with derivatives.
+LeastMisfit findLeastMisfit(const PosteriorProblem& problem, const Eigen::MatrixXd& given = {});
 
 }  // namespace twinmap

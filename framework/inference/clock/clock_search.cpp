@@ -6,6 +6,7 @@
 
 #include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
+#include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_fit.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -82,8 +83,11 @@ class ClockSearch {
     if (const ClockedFit both = fitClock(recorded_, best, {late, rate}); isNoise(both)) {
       return both;
     }
-    while (slips.isGiven() && !isNoise(slips)) {
+    for (double before = slips.misfit; slips.isGiven() && !isNoise(slips); before = slips.misfit) {
       slips = addSlip(slips);
+      if (!mayExplain(slips, before)) {
+        return {};
+      }
     }
     return slips;
   }
@@ -128,12 +132,25 @@ class ClockSearch {
            (is_slip ? 2.0 * std::log(static_cast<double>(fit.residual.size())) : 0.0);
   }
 
+  double countMost(const ClockedFit& fit) const {
+    constexpr double kMost = 40.0;
+    return std::min(kMost, static_cast<double>(fit.residual.size()) / static_cast<double>(kFewestTested));
+  }
+
+  /// Whether noise could be left if each slip that may follow took the share of the misfit that the last one
+  /// took: the first take most.
+  bool mayExplain(const ClockedFit& fit, double before) const {
+    const double left = countMost(fit) - static_cast<double>(fit.faults.size());
+    return !fit.isGiven() || is_unknown_ ||
+           fit.misfit * std::pow(fit.misfit / before, left) < calcChiSquareLimit(fit.calcDegrees());
+  }
+
   /// With one slip more, at the best place; not given where none is worth it.
   ClockedFit addSlip(const ClockedFit& fit) const {
-    constexpr double kOdds = 1e3, kMost = 40.0;
+    constexpr double kOdds = 1e3;
     const auto n = static_cast<double>(fit.residual.size());
     if (!fit.isGiven() || !recorded_.experiment.noise.correlation.empty() ||
-        static_cast<double>(fit.faults.size()) >= std::min(kMost, n / static_cast<double>(kFewestTested))) {
+        static_cast<double>(fit.faults.size()) >= countMost(fit)) {
       return {};
     }
     std::vector<ClockFault> faults = fit.faults;

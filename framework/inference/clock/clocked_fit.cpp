@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_simulator.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -147,7 +148,9 @@ ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
         break;
       }
     }
-    if (before - at.local.misfit <= kConverged * before) {
+    const bool is_gross = recorded.noise.outputs.empty() &&
+                          at.local.misfit > kGrossMisfit * static_cast<double>(at.local.residuals);
+    if (before - at.local.misfit <= (is_gross ? kCreeping : kConverged) * before) {
       break;
     }
   }

@@ -16,6 +16,7 @@
 #include "framework/inference/measurement/supposed_input.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
 #include "framework/inference/measurement/unstated_noise.hpp"
+#include "framework/inference/measurement/wider_bounds.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/models/model_remarks.hpp"
 #include "framework/simulation/team_simulator.hpp"
@@ -73,7 +74,14 @@ class Explaining {
     if (!failure.empty()) {
       upd().posterior = getSimulator().makeFailed(explained_.found.features, explained_.known, failure);
     } else {
-      take(sample(explained_.found));
+      SampledMeasurement stated = sampleAsStated();
+      upd().fault = explainByBounds(getReader(), getSimulator(), explained_.found, explained_.known,
+                                    *stated.estimate.fit);
+      if (!upd().fault.empty()) {
+        take(std::move(stated));
+        return std::move(explained_);
+      }
+      take(explainByNoise(std::move(stated)));
       tryWithoutSpikes();
       tryWithoutAlternation();
     }
@@ -89,6 +97,19 @@ class Explaining {
   const SimulatorFit& getFit() const { return *getInferred().posterior->fit; }
   const InferredMeasurement& getInferred() const { return explained_.inferred; }
   InferredMeasurement& upd() { return explained_.inferred; }
+
+  SampledMeasurement sampleAsStated() const {
+    const AvailableFeatures& found = explained_.found;
+    return getSimulator().sampleAsStated(found.features, explained_.known,
+                                         getSimulator().describeNoise(found.clipped), {},
+                                         getSimulator().spareMisfit(options_));
+  }
+
+  SampledMeasurement explainByNoise(SampledMeasurement stated) const {
+    const AvailableFeatures& found = explained_.found;
+    return getSimulator().explainByNoise(std::move(stated), found.features, explained_.known,
+                                         getSimulator().describeNoise(found.clipped), options_);
+  }
 
   SampledMeasurement sample(const AvailableFeatures& found) const {
     return getSimulator().samplePosterior(found.features, explained_.known,

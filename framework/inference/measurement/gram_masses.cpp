@@ -11,7 +11,7 @@ std::string explainByGrams(const MeasurementReader& reader, const SimulatorRefin
                            const SimulatorFit& fit) {
   const ExperimentSpec& experiment = reader.getExperiment();
   const std::vector<BodySpec>& bodies = experiment.model.system.bodies;
-  if (experiment.model.source || !simulator.samplesFast() || fit.chi_square < kGrossMisfit * fit.degrees) {
+  if (experiment.model.source || !simulator.samplesFast() || !fit.isGross()) {
     return "";
   }
   std::vector<std::vector<std::size_t>> tried;  // bodies whose masses may be in g

@@ -484,6 +484,34 @@ class Direct(FolderTestCase):
         self.assertIn(found["fault"], text)
         self.assertNotIn("Take more draws", text)
 
+    def test_bounds_that_exclude_the_machine_are_named(self):
+        """Of a drop in water: the terminal speed is m g / c, the time constant m / c."""
+        sinker = {
+            "name": "sinker",
+            "parameters": {"m": {"bounds": [1, 4], "unit": "kg"}, "c": {"bounds": [0.5, 20], "unit": "N s/m"}},
+            "system": {
+                "bodies": {"ball": {"mass": "m", "joint": {"type": "slider", "coordinates": ["z"]}}},
+                "dampers": [{"coordinate": "z", "damping": "c"}],
+                "force_laws": [{"coordinate": "z", "force": "30"}],
+            },
+            "outputs": {"z": {"coordinate": "z"}},
+            "simulation": {"duration": 5},
+            "features": [{"samples": {"outputs": ["z"], "start": 0.1, "interval": 0.1, "count": 49}}],
+            "noise": {"stddev": {"z": 1e-3}},
+        }
+        file, record = self.folder / "sinker.yaml", self.folder / "sinker.csv"
+        file.write_text(yaml.safe_dump(sinker))
+        time = np.arange(0, 5.01, 0.05)
+        mass, damping = 6.0, 3.0
+        fallen = 30 / damping * (time - mass / damping * (1 - np.exp(-damping / mass * time)))
+        write_csv(record, ["time", "z"], [time, fallen + 1e-3 * np.random.default_rng(1).normal(size=time.size)])
+        found = json.loads(self.infer(file, record, "--json"))
+        self.assertEqual(found["statuses"], ["model_mismatch", "at_bounds"])
+        named = re.fullmatch(
+            r"m fits at ([0-9.]+) kg \(bounds 1 .. 4\): widen these bounds, if that may be", found["fault"]
+        )
+        self.assertAlmostEqual(float(named.group(1)), mass, delta=0.02)
+
     def test_another_machine_is_a_mismatch(self):
         rows = read_csv(self.measured)
         names = list(rows[0])

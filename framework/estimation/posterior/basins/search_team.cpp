@@ -23,6 +23,11 @@ StepBounds makeBounds(Index dimensions, VectorXd held) {
   return {VectorXd::Constant(dimensions, -1.0), VectorXd::Ones(dimensions), std::move(held)};
 }
 
+/// Whether a search leaves a gross misfit for good.
+bool creeps(const LocalSurface& local, double before) {
+  return local.chi_square > kGrossMisfit * local.degrees && local.misfit > (1.0 - kCreeping) * before;
+}
+
 /// What a Gauss-Newton step would gain of chi-square if the linear model held.
 double predictGain(const LocalSurface& local, const DampedSteps& steps) {
   return local.descent.dot(steps.calcNewtonStep(getModel(local)));
@@ -143,7 +148,8 @@ void SearchTeam::move(const std::vector<Search*>& moved, const MatrixXd& to) {
   std::vector<LocalSurface> reached = surface_.linearize(to);
   for (std::size_t i = 0; i < moved.size(); ++i) {
     Search& search = *moved[i];
-    search.active = reached[i].simulated && predictGain(reached[i], search.steps) > pace_.converged;
+    search.active = reached[i].simulated && predictGain(reached[i], search.steps) > pace_.converged &&
+                    !creeps(reached[i], search.before);
     if (reached[i].simulated) {
       search.local = std::move(reached[i]);
       settle(search);
