@@ -12,6 +12,7 @@
 #include "framework/diagnosis/term_search.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
+#include "framework/inference/joint/joint_starts.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
 
 namespace twinmap {
@@ -62,9 +63,11 @@ AveragedEstimate mix(const std::vector<SimulatorPosterior>& posteriors, const st
 /// One diagnosis on its way.
 class Diagnoser {
  public:
-  Diagnoser(const RecordedFeatures& recordings, const RecordedFeatures& coloured,
-            const DiagnosisOptions& options)
-      : recordings_(recordings), coloured_(coloured), options_(options) {}
+  Diagnoser(const DiagnosedRecordings& recordings, const DiagnosisOptions& options)
+      : recordings_(recordings.features),
+        coloured_(recordings.coloured),
+        alone_(recordings.alone),
+        options_(options) {}
 
   Diagnosis run(const ExperimentSpec& experiment) {
     Diagnosis diagnosis;
@@ -72,7 +75,7 @@ class Diagnoser {
     diagnosis.shared = experiment.model.parameters.size();
     {
       const SearchStage stage("fit the model as it is");
-      diagnosis.before = explain(experiment, recordings_, {}, options_.posterior);
+      diagnosis.before = explainAsItIs(experiment);
     }
     const SimulatorPosterior& before = diagnosis.before.posterior;
     shared_ = static_cast<Index>(experiment.model.parameters.size());
@@ -91,6 +94,19 @@ class Diagnoser {
     }
     finish(search, diagnosis);
     return diagnosis;
+  }
+
+  /// From where the recordings alone fit best, as far as that is known.
+  ExplainedFit explainAsItIs(const ExperimentSpec& experiment) const {
+    const bool is_known = !alone_.empty() && std::all_of(alone_.begin(), alone_.end(), [](const auto& one) {
+      return one.posterior.degrees > 0.0;
+    });
+    if (!is_known) {
+      return explain(experiment, recordings_, {}, options_.posterior);
+    }
+    const MatrixXd starts = listJointStarts(RecordingsProblem(experiment, recordings_).get(), alone_,
+                                            static_cast<Index>(experiment.model.parameters.size()));
+    return explain(experiment, recordings_, starts, searchNearby(options_.posterior));
   }
 
  private:
@@ -180,6 +196,7 @@ class Diagnoser {
   }
 
   const RecordedFeatures &recordings_, &coloured_;
+  const std::vector<RecordingInference>& alone_;
   const DiagnosisOptions& options_;
   Index shared_ = 0;  // parameters of the machine, before any term
 };
@@ -216,24 +233,6 @@ void diagnoseAgain(const ExperimentSpec& experiment, const RecordedFeatures& rec
       return;
     }
   }
-}
-
-Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                   const RecordedFeatures& coloured, const DiagnosisOptions& options) {
-  requireSystem(experiment);
-  ExperimentSpec sized = experiment;
-  if (hasUnknownNoise(experiment.noise)) {
-    const SearchStage stage("find the size of the noise");
-    sizeNoiseBy(explain(experiment, recordings, {}, options.posterior), experiment, recordings, sized);
-  }
-  Diagnoser diagnoser(recordings, coloured, options);
-  Diagnosis diagnosis = diagnoser.run(sized);
-  if (hasUnknownNoise(experiment.noise)) {
-    diagnoseAgain(experiment, recordings, diagnoser, sized, diagnosis);
-  }
-  diagnosis.noise = sized.noise;
-  copyNoise(experiment, diagnosis.corrected);
-  return diagnosis;
 }
 
 }  // namespace
@@ -288,12 +287,24 @@ std::vector<std::string> Diagnosis::listFaults() const {
 
 Diagnosis diagnose(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const DiagnosisOptions& options) {
-  return diagnose(experiment, recordings, recordings, options);
+  return diagnoseExplained(experiment, {recordings, recordings, {}}, options);
 }
 
 Diagnosis diagnoseExplained(const ExperimentSpec& experiment, const DiagnosedRecordings& recordings,
                             const DiagnosisOptions& options) {
-  Diagnosis diagnosis = diagnose(experiment, recordings.features, recordings.coloured, options);
+  requireSystem(experiment);
+  ExperimentSpec sized = experiment;
+  Diagnoser diagnoser(recordings, options);
+  if (hasUnknownNoise(experiment.noise)) {
+    const SearchStage stage("find the size of the noise");
+    sizeNoiseBy(diagnoser.explainAsItIs(experiment), experiment, recordings.features, sized);
+  }
+  Diagnosis diagnosis = diagnoser.run(sized);
+  if (hasUnknownNoise(experiment.noise)) {
+    diagnoseAgain(experiment, recordings.features, diagnoser, sized, diagnosis);
+  }
+  diagnosis.noise = sized.noise;
+  copyNoise(experiment, diagnosis.corrected);
   diagnosis.alone = recordings.alone;
   return diagnosis;
 }

@@ -123,9 +123,7 @@ SampledMeasurement SimulatorSampler::explainByNoise(SampledMeasurement sampled, 
       return other;
     }
   }
-  const bool was_spared =
-      !sampled.estimate.isReliable() && !sampled.posterior.isExplained() && !fit.isGross();
-  return was_spared ? sampleAsStated(features, known, stated, fit.best, searchNearby(options)) : sampled;
+  return sampled;
 }
 
 SimulatorPosteriorOptions SimulatorSampler::spareMisfit(SimulatorPosteriorOptions options) const {

@@ -64,7 +64,7 @@ class SimulatorSampler : public MeasuredSimulator {
   SampledMeasurement explainByNoise(SampledMeasurement sampled, const Eigen::VectorXd& features,
                                     const Eigen::VectorXd& known, const NoiseHypothesis& stated,
                                     const SimulatorPosteriorOptions& options) const;
-  /// Where the posterior may be given up that nothing explains.
+  /// With the draws of a linear response where nothing explains the measurement.
   SimulatorPosteriorOptions spareMisfit(SimulatorPosteriorOptions options) const;
 
   /// The posterior of a trial alone as an estimate, its residual in the places of the features that are

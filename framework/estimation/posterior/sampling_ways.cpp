@@ -163,6 +163,7 @@ std::optional<Sampling> sampleLinearModel(const PosteriorProblem& problem, const
   if (is_explained && !isLinearFor(surface, found.basins.front(), sampling.drawn.draws.points)) {
     return {};
   }
+  sampling.drawn.draws.points = MatrixXd(sampling.drawn.draws.points.topRows(problem.drawn));
   sampling.obstacle = findObstacle(problem, surface, sampling);
   return sampling;
 }
@@ -172,7 +173,8 @@ bool mayBend(const PosteriorProblem& problem) {
 }
 
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                         bool may_bend, const PosteriorDrawOptions& options) {
+                         const PosteriorDrawOptions& options) {
+  const bool may_bend = mayBend(problem);
   const ChosenShape shape = chooseShape(problem, found, whole, options.seed);
   int simulations = 0;
   if (may_bend && !shape.is_straight) {

@@ -24,10 +24,10 @@ bool mayBend(const PosteriorProblem& problem);
 
 /// The straightest way first: along a bent ridge mixtures may find draws of a part of it good enough. Where
 /// sums alone are determined, in these (drawInSums); from mixtures of the basins, with what is straighter as
-/// it is (findRidgeShape); where that does not do, along walks (drawAlongWalks). whole: in logarithms, where
-/// the basins were found. may_bend: whether sums and walks are tried (mayBend).
+/// it is (findRidgeShape); where that does not do, along walks (drawAlongWalks). Sums and walks where ridges
+/// may bend (mayBend). whole: in logarithms, where the basins were found.
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
-                         bool may_bend, const PosteriorDrawOptions& options);
+                         const PosteriorDrawOptions& options);
 
 /// As if the response were linear about the best basin; none where responses that are linear about some of
 /// these draws say otherwise (calcDisplacements). Those of a best fit that noise does not explain are not

@@ -137,12 +137,12 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     return posterior;
   }
   std::optional<Sampling> linear;
-  if (options.is_linear && problem.drawn > kManyUnknown) {
+  const bool is_spared =
+      options.spares_misfit && !posterior.isExplained() && areOneBasin(surface, found.basins);
+  if (is_spared || (options.is_linear && problem.drawn > kManyUnknown)) {
     linear = sampleLinearModel(problem, found, whole, posterior.isExplained(), options);
   }
-  const bool is_spared = options.spares_misfit && !posterior.isExplained();
-  const Sampling sampling =
-      linear ? *linear : samplePosterior(problem, found, whole, mayBend(problem) && !is_spared, options);
+  const Sampling sampling = linear ? *linear : samplePosterior(problem, found, whole, options);
   posterior.is_linear = linear.has_value();
   posterior.simulations = surface.getSimulations() + sampling.simulations;
   posterior.effective_sample_size = sampling.drawn.effective_sample_size;

@@ -66,8 +66,8 @@ struct SimulatorPosterior {
 
 struct SimulatorPosteriorOptions : PosteriorDrawOptions {
   BasinSearchOptions search{};
-  /// Whether draws that mixtures about the basins do not give are not sought by sums and walks where noise
-  /// does not explain the best point: they would be of a wrong model.
+  /// Whether draws are those of a linear response about the best point where noise does not explain that:
+  /// they would be of a wrong model.
   bool spares_misfit = false;
   /// Whether draws are wanted of what the search found (no draws are there yet); default: they are. Not
   /// reliable where they are not.
@@ -93,7 +93,7 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
                                    const Eigen::VectorXd& held, const Eigen::MatrixXd& given,
                                    const SimulatorPosteriorOptions& options);
 
-/// Where few searches end best; an infinite chi-square and no point where none could be simulated.
+/// The end of few searches: an infinite chi-square and no point where none could be simulated.
 struct LeastMisfit {
   double chi_square = std::numeric_limits<double>::infinity();
   Eigen::VectorXd best{};  ///< all unknown parameters (u)

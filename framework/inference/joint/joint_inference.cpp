@@ -19,6 +19,7 @@
 #include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/joint/join_trials.hpp"
 #include "framework/inference/joint/joint_estimate.hpp"
+#include "framework/inference/joint/joint_starts.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/simulation/simulator_team.hpp"
@@ -41,63 +42,6 @@ constexpr int kDrawsAlone = 128;
 /// Of all recordings of such a machine, unless given: half of what others take. With an effective sample size
 /// of half of these, means are known to a tenth of a standard deviation.
 constexpr int kDrawsOfMany = 256;
-
-/// The minimum of the sum of the recordings' quadratic misfits about their own minima, each over what it
-/// alone leaves unknown: nearly that of all together. The prior counts in each, which moves it by little.
-VectorXd combineMinima(const PosteriorProblem& problem, const std::vector<RecordingInference>& alone,
-                       const VectorXd& base) {
-  const LogCoordinates coordinates(problem.unknown);
-  const Index all = base.size();
-  MatrixXd information = kHalfWidthInformation * MatrixXd::Identity(all, all);
-  VectorXd descent = VectorXd::Zero(all);
-  for (std::size_t k = 0; k < alone.size(); ++k) {
-    const std::vector<Index>& own = problem.trials[k].unknown;
-    VectorXd point = base;
-    point(own) = alone[k].posterior.best;
-    const VectorXd at = coordinates.fromParameters(point);
-    information(own, own) += alone[k].posterior.information;
-    descent(own) += alone[k].posterior.information * at(own);
-  }
-  const VectorXd minimum = linalg::solvePositiveDefinite(information, descent);
-  return coordinates.toParameters(minimum.cwiseMax(-1.0).cwiseMin(1.0));
-}
-
-/// Starts of the joint search: what each recording alone found for the machine, beside what the others alone
-/// found for themselves; and the mean of all, weighted by their information.
-MatrixXd makeStarts(const PosteriorProblem& problem, const std::vector<RecordingInference>& alone,
-                    Index shared) {
-  VectorXd base = VectorXd::Zero(static_cast<Index>(problem.unknown.size()));
-  for (std::size_t k = 0; k < alone.size(); ++k) {
-    base(problem.trials[k].unknown) = alone[k].posterior.best;
-  }
-  std::vector<VectorXd> starts;
-  VectorXd sum = VectorXd::Zero(shared), weight = VectorXd::Zero(shared);
-  for (const RecordingInference& one : alone) {
-    const SimulatorPosterior& posterior = one.posterior;
-    starts.push_back(base);
-    starts.back().head(shared) = posterior.best.head(shared);
-    for (std::size_t m = 1; m < posterior.modes.size(); ++m) {
-      starts.push_back(base);
-      starts.back().head(shared) = posterior.modes[m].mean.head(shared);
-    }
-    if (posterior.isReliable()) {
-      const VectorXd own = posterior.stddev.head(shared).cwiseAbs2().cwiseInverse();
-      sum += own.cwiseProduct(posterior.mean.head(shared));
-      weight += own;
-    }
-  }
-  if (problem.drawn > kManyUnknown) {
-    starts.insert(starts.begin(), combineMinima(problem, alone, base));
-  } else if (weight.minCoeff() > 0.0) {
-    starts.push_back(base);
-    starts.back().head(shared) = sum.cwiseQuotient(weight);
-  }
-  MatrixXd given(base.size(), static_cast<Index>(starts.size()));
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    given.col(static_cast<Index>(i)) = starts[i];
-  }
-  return given;
-}
 
 /// Without the sizes of faults of clocks, whose bounds are those of a search.
 void leaveClockBounds(const PosteriorProblem& problem, const std::vector<ExplainedRecording>& alone,
@@ -374,7 +318,7 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   const auto shared = static_cast<Index>(getParameters().size());
   const PosteriorProblem problem = makeProblem(recordings, alone);
   const SearchStage together("all recordings together");
-  inferred.joint = samplePosterior(problem, makeStarts(problem, inferred.alone, shared), joint_options_);
+  inferred.joint = samplePosterior(problem, listJointStarts(problem, inferred.alone, shared), joint_options_);
   inferred.simulations += inferred.joint.simulations;
   if (!(inferred.joint.degrees > 0.0)) {
     return inferred;

@@ -8,6 +8,7 @@
 
 #include "framework/estimation/posterior/agreement.hpp"
 #include "framework/experiment/yaml/yaml_node.hpp"
+#include "framework/inference/joint/recording_inference.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement/explained_recording.hpp"
 
@@ -33,13 +34,6 @@ struct ScatterEstimate {
   IntervalFactor factor{};  ///< of a Student distribution, as recordings are few
   double scatter = 0.0;     ///< standard deviation between recordings that their own does not explain
   double ratio = 0.0;       ///< of their scatter to that which their own explains: about 1 where they agree
-};
-
-/// A recording by itself.
-struct RecordingInference {
-  std::string label;
-  InferredMeasurement inferred;
-  SimulatorPosterior posterior;  ///< that of `inferred`, of all its unknown parameters
 };
 
 /// What several recordings say about one machine.

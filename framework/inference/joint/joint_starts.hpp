@@ -1,0 +1,17 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "framework/estimation/posterior/posterior_problem.hpp"
+#include "framework/inference/joint/recording_inference.hpp"
+
+namespace twinmap {
+
+/// Starts of a search of several recordings together (all unknown parameters x n): what each alone found for
+/// the machine, its first `shared` parameters, beside what the others alone found for themselves; and the
+/// mean of all, weighted by their information. Each could be simulated alone.
+Eigen::MatrixXd listJointStarts(const PosteriorProblem& problem, const std::vector<RecordingInference>& alone,
+                                Eigen::Index shared);
+
+}  // namespace twinmap
