@@ -218,17 +218,21 @@ ModelTest testTerms(const ExperimentSpec& experiment, const RecordedFeatures& re
   return test;
 }
 
-/// Of recordings whose noise has offsets or a colour: beside these, or in their place. That is where noise as
-/// it is stated remains with a term other than an offset. without: where they do not count.
+Index countMissing(const RecordedFeatures& recordings) {
+  Index missing = 0;
+  for (const VectorXd& features : recordings.features) {
+    missing += features.array().isNaN().count();
+  }
+  return missing;
+}
+
+/// Of recordings that have outliers, or noise with offsets, a colour or another size than stated: beside
+/// these, or in their place. That is where noise as it is stated remains with a term other than an offset.
+/// without: where they do not count.
 ModelTest testBesideFaults(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                            const RecordedFeatures& without, const KnownFit& known) {
   ModelTest test = testTerms(experiment, recordings, known);
-  const auto may_be_physics = [](const NoiseHypothesis& noise) {
-    return std::any_of(noise.outputs.begin(), noise.outputs.end(), [](const OutputNoise& output) {
-      return output.has_offset || !output.colours.empty();
-    });
-  };
-  if (std::none_of(recordings.noise.begin(), recordings.noise.end(), may_be_physics)) {
+  if (!recordings.hasFaults() && countMissing(recordings) == countMissing(without)) {
     return test;
   }
   ModelTest instead = testTerms(experiment, without, known);
@@ -243,13 +247,12 @@ ModelTest testBesideFaults(const ExperimentSpec& experiment, const RecordedFeatu
 ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                         const InferredMeasurement& inferred, const KnownFit& known) {
   const SimulatorFit* fit = findFit(inferred);
-  RecordedFeatures explained = recording, without = recording;
+  RecordedFeatures explained = recording;
   if (fit == nullptr) {
     return testTerms(experiment, recording, known);
   }
   takeFaults(*fit, {true, true, true}, 0, explained);
-  takeFaults(*fit, {}, 0, without);
-  return testBesideFaults(experiment, explained, without, known);
+  return testBesideFaults(experiment, explained, recording, known);
 }
 
 /// The recordings whose clocks have no fault, and the point without what is of the others alone.

@@ -253,7 +253,7 @@ FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& rec
     return fitted;  // the parameters, or its own scale, take it up
   }
   const double reach = std::abs(fitted.estimate) + kStddevs * fitted.stddev;
-  if (reach < largest) {
+  if (reach < largest && !candidate.is_share) {
     setBounds(static_cast<std::size_t>(p), {-reach, reach, {}}, fitted.augmented.experiment);
   }
   return fitted;

@@ -85,7 +85,11 @@ void fitRanked(const CurrentFit& current, const RecordedFeatures& recordings, co
                          fitted.log_evidence_of_scales +
                          calcLogSignEvidence(finding.candidate, fitted.estimate);
   finding.shifts = (fitted.point.head(p) - current.point.head(p)).cwiseQuotient(scored.stddevs.head(p));
-  finding.holds_cautiously = calcPValue(fitted.estimate / fitted.cautious_stddev, scored.tested) < level;
+  const double deviations = finding.candidate.is_share
+                                ? std::sqrt(std::max(0.0, current.chi_square - fitted.chi_square))
+                                : fitted.estimate / fitted.stddev;
+  finding.holds_cautiously =
+      calcPValue(deviations * fitted.stddev / fitted.cautious_stddev, scored.tested) < level;
   auto at = static_cast<Index>(current.experiment.model.parameters.size());
   for (OwnScale& scale : finding.candidate.own_scales) {
     scale.value = fitted.point[++at];

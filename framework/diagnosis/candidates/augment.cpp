@@ -136,6 +136,8 @@ AugmentedExperiment addAll(const ExperimentSpec& experiment, const std::vector<T
 
 AugmentedExperiment addTerm(const ExperimentSpec& experiment, const TermCandidate& candidate,
                             double largest) {
+  // laws exclude each other; levels are not yet 0 over 0
+  constexpr double kNearlyWhole = 0.998, kWhole = 0.999;
   AugmentedExperiment augmented{experiment, 1};
   ExperimentSpec& changed = augmented.experiment;
   removeCandidate(candidate.term, changed);
@@ -143,7 +145,11 @@ AugmentedExperiment addTerm(const ExperimentSpec& experiment, const TermCandidat
     removeCandidate(candidate.term, trial.experiment);
   }
   const std::string name = makeParameterName(changed, candidate.term);
-  addParameter(makeCoefficient(name, candidate, largest), changed);
+  ParameterSpec coefficient = makeCoefficient(name, candidate, largest);
+  if (candidate.is_share) {
+    coefficient.bounds = {kNearlyWhole, kWhole, {}};
+  }
+  addParameter(coefficient, changed);
   std::vector<std::string> scales;
   for (const OwnScale& own : candidate.own_scales) {
     scales.push_back(makeParameterName(changed, candidate.term + (scales.empty() ? ".scale" : ".scale2")));

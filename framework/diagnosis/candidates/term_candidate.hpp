@@ -33,6 +33,8 @@ struct TermCandidate {
   AddTerm add;
   /// Of an experiment with trials, to each of theirs instead; empty where a trial lacks what it acts on.
   std::vector<AddTerm> add_to_trials{};
+  /// Whether the coefficient is the share, 0 to 1, in which it takes the place of what the model has.
+  bool is_share = false;
 
   const AddTerm& getAdd(std::size_t trial) const {
     return add_to_trials.empty() ? add : add_to_trials[trial];

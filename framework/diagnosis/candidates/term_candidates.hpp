@@ -26,6 +26,10 @@ std::vector<TermCandidate> listForceCandidates(const ModelSizes& sizes);
 /// spring.
 std::vector<TermCandidate> listMemoryCandidates(const ModelSpec& model, const ModelSizes& sizes);
 
+/// Other laws in the place of each friction element of the model: by a speed over which it sets in, and by
+/// bristles.
+std::vector<TermCandidate> listLawCandidates(const ModelSpec& model, const ModelSizes& sizes);
+
 /// Mass, centre of mass and moments of inertia of each body; gravity in another direction.
 std::vector<TermCandidate> listBodyCandidates(const ModelSpec& model, const ModelSizes& sizes);
 

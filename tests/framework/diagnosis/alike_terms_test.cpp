@@ -151,5 +151,37 @@ TEST(AlikeTerms, AreFittedFromWhereOneOfThemFits) {
   EXPECT_TRUE(tied.count("presliding.angle"));
 }
 
+/// Of a block on a belt: its parameters are k, Fs, Fc, d.
+const Eigen::Vector4d kBelt(80.0, 3.5, 2.1, 0.5);
+
+Diagnosis diagnoseBelt(const std::vector<std::string>& model, const std::vector<std::string>& machine) {
+  const std::string belt = std::string(TWINMAP_SOURCE_DIR) + "/experiments/mechanisms/dry_belt.yaml";
+  const ExperimentSpec experiment = loadExperiment(belt, model);
+  return diagnose(experiment, {makeLayout(experiment), {measure(loadExperiment(belt, machine), kBelt)}, {}},
+                  {});
+}
+
+const std::vector<std::string> kCreeps{"system.friction[0].model=regularised",
+                                       "system.friction[0].onset_speed=2e-3"};
+
+// Friction that creeps where the model's sticks, and the other way about: the parameters are right with it.
+TEST(AlikeTerms, AreOtherLawsOfTheModelsFriction) {
+  for (const auto& [model, machine] :
+       {std::pair(std::vector<std::string>(), kCreeps), std::pair(kCreeps, std::vector<std::string>())}) {
+    const Diagnosis diagnosis = diagnoseBelt(model, machine);
+    EXPECT_EQ(diagnosis.listTerms(), std::vector<std::string>{"regularised_law.x"});
+    EXPECT_STREQ(diagnosis.getStatus(), "ok");
+    ASSERT_TRUE(diagnosis.averaged.isGiven());
+    const VectorXd off = (diagnosis.averaged.mean - kBelt).cwiseQuotient(diagnosis.averaged.stddev);
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 3.5) << off;
+  }
+}
+
+TEST(AlikeTerms, AreNotFoundWhereTheLawIsRight) {
+  for (const std::vector<std::string>& law : {std::vector<std::string>(), kCreeps}) {
+    EXPECT_EQ(diagnoseBelt(law, law).found, 0U);
+  }
+}
+
 }  // namespace
 }  // namespace twinmap

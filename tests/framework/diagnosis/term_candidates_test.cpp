@@ -47,7 +47,8 @@ TEST(ReplaceName, ReplacesWholeWords) {
 TEST(Candidates, MakeExperimentsThatPassTheChecks) {
   for (const std::string& file :
        {kCart, kTable1, findMechanism("double_pendulum_mild"), findMechanism("spatial_arm"),
-        findMechanism("released_pendulum"), findMechanism("servo_axis"), findMechanism("stick_slip")}) {
+        findMechanism("released_pendulum"), findMechanism("servo_axis"), findMechanism("stick_slip"),
+        findMechanism("dry_belt")}) {
     const ExperimentSpec experiment = loadExperiment(file);
     const std::vector<TermCandidate> candidates = listAtCenter(experiment);
     EXPECT_GT(candidates.size(), 20U);
