@@ -30,6 +30,9 @@ std::vector<TermCandidate> listMemoryCandidates(const ModelSpec& model, const Mo
 /// bristles.
 std::vector<TermCandidate> listLawCandidates(const ModelSpec& model, const ModelSizes& sizes);
 
+/// Another place and speed of each coordinate at the start, where these are not unknown anyway.
+std::vector<TermCandidate> listStartCandidates(const ModelSpec& model, const ModelSizes& sizes);
+
 /// Mass, centre of mass and moments of inertia of each body; gravity in another direction.
 std::vector<TermCandidate> listBodyCandidates(const ModelSpec& model, const ModelSizes& sizes);
 

@@ -91,6 +91,15 @@ TEST(Diagnosis, FindsDryFriction) {
   }
 }
 
+TEST(Diagnosis, FindsAnotherStart) {
+  const Diagnosis diagnosis = diagnoseCart({measureCart(kSound, 0, {"initial.coordinates={x: 0.01}"})});
+  EXPECT_EQ(diagnosis.listTerms(), std::vector<std::string>{"start.x"});
+  const SimulatorPosterior& after = diagnosis.after.posterior;
+  EXPECT_NEAR(after.mean[3], 0.01, 4.0 * after.stddev[3]);
+  EXPECT_LT(((after.mean.head(3) - kTrueCart).cwiseQuotient(after.stddev.head(3))).cwiseAbs().maxCoeff(),
+            4.0);
+}
+
 TEST(Diagnosis, ExplainsRecordingsTogether) {
   const Diagnosis one = diagnoseCart({measureCart(kWithFriction)});
   const Diagnosis two = diagnoseCart({measureCart(kWithFriction), measureCart(kWithFriction, 1)});

@@ -155,6 +155,18 @@ TEST(Candidates, LimitsSpanTheExtentsOfAllTrials) {
 }
 
 // Exact derivatives at 0 against differences of simulations, each with the term alone.
+TEST(Candidates, AreStartsWhereTheseAreNotUnknownAnyway) {
+  const auto count_starts = [](const ExperimentSpec& experiment) {
+    const std::vector<TermCandidate> candidates = listAtCenter(experiment);
+    return std::count_if(candidates.begin(), candidates.end(),
+                         [](const TermCandidate& one) { return one.term.rfind("start", 0) == 0; });
+  };
+  EXPECT_EQ(count_starts(loadExperiment(kCart)), 2);
+  const std::vector<std::string> unknown{"nuisance.x0={bounds: [-1, 1], unit: m}",
+                                         "initial.coordinates={x: 2*x0}"};
+  EXPECT_EQ(count_starts(loadExperiment(kCart, unknown)), 1);
+}
+
 TEST(Candidates, HaveExactDerivatives) {
   const ExperimentSpec experiment =
       loadExperiment(kCart, {"simulation.relative_tolerance=1e-10", "simulation.absolute_tolerance=1e-13"});
