@@ -79,6 +79,7 @@ class Diagnoser {
     }
     const SimulatorPosterior& before = diagnosis.before.posterior;
     shared_ = static_cast<Index>(experiment.model.parameters.size());
+    requireCandidates(options_.candidates, experiment, recordings_, before.best);
     TermSearch search(recordings_, options_, {experiment, before.best, before.chi_square, before.degrees},
                       diagnosis.before.isExplained(), shared_);
     const std::size_t most =

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "framework/diagnosis/candidates/term_candidate.hpp"
-#include "framework/diagnosis/problem/recorded_problem.hpp"
+#include "framework/diagnosis/scored_candidates.hpp"
 
 namespace twinmap {
 
@@ -17,6 +17,7 @@ struct DiagnosisOptions {
   int max_terms = 3;
   /// Terms to take whatever the tests say, one after the other; then no others are sought.
   std::vector<std::string> accepted{};
+  CandidateChoice candidates{};
   SimulatorPosteriorOptions posterior{};
 };
 

@@ -154,7 +154,7 @@ std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored,
 /// The term of some kinds that would explain a misfit; `explains` where noise remains with it.
 std::optional<MissingTerm> explainMisfit(const CurrentFit& current, const RecordedFeatures& recording,
                                          CandidateKinds kinds) {
-  const ScoredCandidates scored = scoreCandidates(current.experiment, recording, current.point, kinds);
+  const ScoredCandidates scored = scoreCandidates(current.experiment, recording, current.point, {kinds});
   const auto p = static_cast<Index>(current.experiment.model.parameters.size());
   std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
   const RankedTerm* best = fitBest(current, recording, scored, p, ranked);
@@ -189,7 +189,7 @@ std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const
 ModelTest testTerms(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                     const KnownFit& known) {
   const bool unstated = hasUnknownNoise(experiment.noise);
-  const ScoredCandidates scored = scoreCandidates(experiment, recordings, known.point, known.asked);
+  const ScoredCandidates scored = scoreCandidates(experiment, recordings, known.point, {known.asked});
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   ModelTest test;
   if (!unstated) {

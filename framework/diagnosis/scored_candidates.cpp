@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "framework/base/log/search_stage.hpp"
+#include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -148,6 +149,30 @@ std::vector<std::vector<TermCandidate>> splitByStates(const std::vector<TermCand
   return parts;
 }
 
+bool isNamed(const TermCandidate& candidate, const std::string& name) {
+  return candidate.term == name || candidate.term.rfind(name + ".", 0) == 0;
+}
+
+bool isNamed(const TermCandidate& candidate, const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(), [&](const auto& name) { return isNamed(candidate, name); });
+}
+
+void keepChosen(const CandidateChoice& choice, std::vector<TermCandidate>& candidates) {
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [&](const TermCandidate& one) {
+                                    return isNamed(one, choice.without) ||
+                                           (!choice.only.empty() && !isNamed(one, choice.only));
+                                  }),
+                   candidates.end());
+}
+
+std::vector<TermCandidate> listAll(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
+                                   const VectorXd& point) {
+  return experiment.trials.empty()
+             ? listCandidates(experiment, calcSizes(experiment, recordings, point, 0))
+             : listTrialCandidates(experiment, calcTrialSizes(experiment, recordings, point));
+}
+
 }  // namespace
 
 MatrixXd calcBoundedCovariance(const MatrixXd& jacobian, const VectorXd& half_widths) {
@@ -200,18 +225,38 @@ void requireSystem(const ExperimentSpec& experiment) {
   }
 }
 
+void requireCandidates(const CandidateChoice& choice, const ExperimentSpec& experiment,
+                       const RecordedFeatures& recordings, const VectorXd& point) {
+  if (choice.only.empty() && choice.without.empty()) {
+    return;
+  }
+  const std::vector<TermCandidate> candidates = listAll(experiment, recordings, point);
+  std::vector<std::string> terms;
+  std::transform(candidates.begin(), candidates.end(), std::back_inserter(terms),
+                 [](const TermCandidate& one) { return one.term; });
+  for (const auto& [option, names] :
+       {std::pair("--only", choice.only), std::pair("--without", choice.without)}) {
+    for (const std::string& name : names) {
+      if (std::none_of(candidates.begin(), candidates.end(),
+                       [&](const TermCandidate& one) { return isNamed(one, name); })) {
+        throw ExperimentError(fmt::format("{} {}: no candidate of this model has that name{}", option, name,
+                                          suggestName(name, terms)));
+      }
+    }
+  }
+}
+
 ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                                 const VectorXd& point, CandidateKinds kinds) {
+                                 const VectorXd& point, const CandidateChoice& choice) {
   requireSystem(experiment);
   ScoredCandidates scored;
-  scored.candidates = experiment.trials.empty()
-                          ? listCandidates(experiment, calcSizes(experiment, recordings, point, 0))
-                          : listTrialCandidates(experiment, calcTrialSizes(experiment, recordings, point));
+  scored.candidates = listAll(experiment, recordings, point);
   const auto with_states = std::stable_partition(scored.candidates.begin(), scored.candidates.end(),
                                                  [](const TermCandidate& one) { return !one.has_states; });
-  if (kinds == CandidateKinds::kWithoutStates) {
+  if (choice.kinds == CandidateKinds::kWithoutStates) {
     scored.candidates.erase(with_states, scored.candidates.end());
   }
+  keepChosen(choice, scored.candidates);
   std::vector<ParameterSpec> unknown;
   LinearizedRecordings linear;
   MatrixXd terms;

@@ -33,7 +33,8 @@ std::size_t countFitted(const std::vector<RankedTerm>& ranked) {
 }
 
 std::optional<Rivals> findRivals(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
-                                 Index p, double level, const CurrentFit& fit, std::size_t out) {
+                                 Index p, const DiagnosisOptions& options, const CurrentFit& fit,
+                                 std::size_t out) {
   const auto isPresent = [&](const RankedTerm& one) {
     return one.finding.candidate.term == fit.terms[out].candidate.term;
   };
@@ -42,7 +43,7 @@ std::optional<Rivals> findRivals(const ExperimentSpec& without_terms, const Reco
     return {};
   }
   const ScoredCandidates scored =
-      scoreCandidates(rivals.without.experiment, recordings, rivals.without.point);
+      scoreCandidates(rivals.without.experiment, recordings, rivals.without.point, options.candidates);
   std::vector<RankedTerm>& ranked = rivals.ranked;
   ranked = rankTerms(scored, rivals.without, p);
   const auto present = std::find_if(ranked.begin(), ranked.end(), isPresent);
@@ -53,7 +54,7 @@ std::optional<Rivals> findRivals(const ExperimentSpec& without_terms, const Reco
   std::rotate(ranked.begin(), present, present + 1);
   ranked.resize(std::min(ranked.size(), fitted + 1));
   for (RankedTerm& one : ranked) {
-    fitRanked(rivals.without, recordings, scored, p, level, one);
+    fitRanked(rivals.without, recordings, scored, p, options.level, one);
   }
   std::stable_sort(ranked.begin(), ranked.end(), hasMoreEvidence);
   rivals.present =
@@ -84,11 +85,11 @@ void addTied(const Rivals& rivals, std::size_t chosen, const std::string& term, 
 }  // namespace
 
 Exchange exchangeTerms(const ExperimentSpec& without_terms, const RecordedFeatures& recordings, Index p,
-                       double level, CurrentFit& fit) {
+                       const DiagnosisOptions& options, CurrentFit& fit) {
   Exchange exchange;
   const std::size_t earlier = fit.terms.size() - 1;
   for (std::size_t tried = 0, at = 0; tried < earlier; ++tried) {
-    const std::optional<Rivals> rivals = findRivals(without_terms, recordings, p, level, fit, at);
+    const std::optional<Rivals> rivals = findRivals(without_terms, recordings, p, options, fit, at);
     if (!rivals) {
       ++at;
       continue;

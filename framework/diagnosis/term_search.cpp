@@ -81,7 +81,8 @@ TermSearch::TermSearch(const RecordedFeatures& recordings, const DiagnosisOption
 
 DiagnosisStep TermSearch::takeStep(std::size_t number) {
   const CurrentFit current = fits_.back();
-  const ScoredCandidates scored = scoreCandidates(current.experiment, recordings_, current.point);
+  const ScoredCandidates scored =
+      scoreCandidates(current.experiment, recordings_, current.point, options_.candidates);
   std::vector<RankedTerm> ranked = rankTerms(scored, current, shared_);
   DiagnosisStep step{current.chi_square, current.degrees, scored.tested, {}};
   const bool is_given = !options_.accepted.empty();
@@ -130,7 +131,8 @@ void TermSearch::fitAgain(const CurrentFit& current, const ScoredCandidates& sco
   const auto all = static_cast<Index>(current.experiment.model.parameters.size());
   near.point.head(all) = best.head(all);
   near.point.tail(current.point.size() - all) = best.tail(current.point.size() - all);
-  const ScoredCandidates again = scoreCandidates(current.experiment, recordings_, near.point);
+  const ScoredCandidates again =
+      scoreCandidates(current.experiment, recordings_, near.point, options_.candidates);
   std::vector<RankedTerm> there = rankTerms(again, near, shared_);
   there.resize(std::min(there.size(), kFittedTerms), RankedTerm{{}});
   for (RankedTerm& one : there) {
@@ -165,7 +167,7 @@ void TermSearch::takeFirst(const CurrentFit& current, const std::vector<RankedTe
   Exchange exchange;
   if (!is_given) {
     step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
-    exchange = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_.level, next);
+    exchange = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_, next);
     step.rivals = exchange.rivals;
   }
   fits_.push_back(std::move(next));

@@ -32,7 +32,7 @@ Cost measure(const ExperimentSpec& experiment, CandidateKinds kinds) {
   std::vector<double> times;
   for (int run = 0; run < kRuns; ++run) {
     const std::clock_t begin = std::clock();
-    cost.candidates = scoreCandidates(experiment, zero, center, kinds).candidates.size();
+    cost.candidates = scoreCandidates(experiment, zero, center, {kinds}).candidates.size();
     times.push_back(1e3 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
   }
   std::sort(times.begin(), times.end());

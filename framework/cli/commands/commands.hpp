@@ -134,10 +134,11 @@ struct DiagnoseArguments {
   std::vector<std::string> known;     ///< "NAME=VALUE" of the inputs
   std::vector<double> starts;         ///< times in each file that are 0 of the model; empty: the experiment's
   std::vector<std::string> accepted;  ///< terms to take; empty: those that are found
-  std::string out;                    ///< file for the corrected experiment; "": none
-  std::string page;                   ///< file for the residuals and the unknown forces; "": none
-  bool json = false, csv = false;     ///< at most one; neither: a human-readable table
-  int threads = 0;                    ///< 0: all
+  std::vector<std::string> only, without;  ///< candidates that alone can be, and that cannot
+  std::string out;                         ///< file for the corrected experiment; "": none
+  std::string page;                        ///< file for the residuals and the unknown forces; "": none
+  bool json = false, csv = false;          ///< at most one; neither: a human-readable table
+  int threads = 0;                         ///< 0: all
 };
 
 struct ValidateArguments {

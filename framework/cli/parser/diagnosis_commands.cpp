@@ -51,6 +51,14 @@ void addDiagnose(CLI::App& app) {
             "Take these terms, one after the other, instead of those that are found; see --out")
       ->delimiter(',')
       ->allow_extra_args(false);
+  for (const auto& [name, terms, says] :
+       {std::tuple("--only", &arguments->only,
+                   "Look for these terms alone, or all of a name (friction of a bench: "
+                   "coulomb,stribeck)"),
+        std::tuple("--without", &arguments->without,
+                   "Leave these out, which the machine cannot have (gain.voltage, clock)")}) {
+    addOption(*command, name, "TERM,...", *terms, says)->delimiter(',')->allow_extra_args(false);
+  }
   addOption(*command, "--out", "FILE", arguments->out, "File for the corrected experiment (YAML)");
   addOption(
       *command, "--page", "FILE", arguments->page,

@@ -73,7 +73,7 @@ TEST(AlikeTerms, AreTiedOnBothSidesOfAGear) {
   const RecordingsProblem problem(experiment, recordings);
   const RecordingFit fit = problem.fit(point);
   const ScoredCandidates scored =
-      scoreCandidates(experiment, recordings, fit.point, CandidateKinds::kWithoutStates);
+      scoreCandidates(experiment, recordings, fit.point, {CandidateKinds::kWithoutStates});
   const CurrentFit current{experiment, fit.point, fit.chi_square, 196.0, {}};
   double rotor = -kInfinity, load = -kInfinity;
   for (const RankedTerm& one : rankTerms(scored, current, 2)) {

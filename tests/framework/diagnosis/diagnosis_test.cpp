@@ -100,6 +100,24 @@ TEST(Diagnosis, FindsAnotherStart) {
             4.0);
 }
 
+TEST(Diagnosis, LooksForWhatCanBe) {
+  const ExperimentSpec experiment = loadExperiment(kCart);
+  const RecordedFeatures recordings{makeLayout(experiment), {measureCart(kWithFriction)}, {}};
+  DiagnosisOptions options;
+  options.candidates.without = {"coulomb.x", "stribeck"};
+  const Diagnosis without = diagnose(experiment, recordings, options);
+  ASSERT_FALSE(without.steps.empty());
+  for (const TermFinding& one : without.steps.front().ranked) {
+    EXPECT_NE(one.candidate.term, "coulomb.x");
+    EXPECT_NE(one.candidate.term, "stribeck.x");
+  }
+  options.candidates = {CandidateKinds::kAll, {"drag"}, {}};
+  const Diagnosis only = diagnose(experiment, recordings, options);
+  EXPECT_EQ(only.steps.front().tested, 1);
+  options.candidates.only = {"drga"};
+  EXPECT_THROW(diagnose(experiment, recordings, options), ExperimentError);
+}
+
 TEST(Diagnosis, ExplainsRecordingsTogether) {
   const Diagnosis one = diagnoseCart({measureCart(kWithFriction)});
   const Diagnosis two = diagnoseCart({measureCart(kWithFriction), measureCart(kWithFriction, 1)});

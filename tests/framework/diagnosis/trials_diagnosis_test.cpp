@@ -103,7 +103,7 @@ TEST(TrialsDiagnosis, ScoresAddUpOverTrials) {
   const ExperimentSpec combined = readCombined();
   const RecordedFeatures recordings = measureTrials(combined, kTrueDrag);
   const ScoredCandidates scored =
-      scoreCandidates(combined, recordings, kTrueCart, CandidateKinds::kWithoutStates);
+      scoreCandidates(combined, recordings, kTrueCart, {CandidateKinds::kWithoutStates});
   std::size_t drag = 0;
   while (scored.candidates[drag].term != "drag.x") {
     ++drag;

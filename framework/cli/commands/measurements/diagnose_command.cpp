@@ -91,6 +91,8 @@ void diagnose(const DiagnoseArguments& arguments) {
   const DiagnosedRecordings recordings = explainSensors(inferrer, experiment, list.get(), known);
   DiagnosisOptions options;
   options.accepted = arguments.accepted;
+  options.candidates.only = arguments.only;
+  options.candidates.without = arguments.without;
   options.posterior = makePosteriorOptions(experiment, SimulatorPosteriorOptions{}.draws);
   const Diagnosis diagnosis = diagnoseExplained(experiment, recordings, options);
   waiting.clear();
