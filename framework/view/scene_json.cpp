@@ -1,6 +1,7 @@
 #include "framework/view/scene_json.hpp"
 
 #include "framework/base/json/json.hpp"
+#include "framework/base/text/base64.hpp"
 #include "framework/base/text/number_text.hpp"
 
 namespace twinmap::view {
@@ -24,22 +25,58 @@ void append(const Json& numbers, std::string& text) {
   }
 }
 
-/// Of each motion one list of numbers: frames, bodies, twelve each; millions of values of JSON would take
-/// longer to make than to simulate.
-std::string makeMotionJson(const SceneMotion& motion) {
-  std::string text = "{\"name\":" + formatJson(Json(motion.name)) + ",\"poses\":[";
-  for (const std::vector<Pose>& frame : motion.poses) {
+std::string makePosesJson(const std::vector<std::vector<Pose>>& frames) {
+  std::string text = "[";
+  for (const std::vector<Pose>& frame : frames) {
     for (const Pose& pose : frame) {
       append(toJson(pose), text);
     }
   }
-  text += "],\"outputs\":[";
+  return text + "]";
+}
+
+/// Of each motion one list of numbers: frames, bodies, twelve each; millions of values of JSON would take
+/// longer to make than to simulate.
+std::string makeMotionJson(const SceneMotion& motion) {
+  std::string text = "{\"name\":" + formatJson(Json(motion.name)) +
+                     ",\"poses\":" + makePosesJson(motion.poses) + ",\"outputs\":[";
   for (const auto& row : motion.outputs.rowwise()) {
     text += text.back() == '[' ? "[" : ",[";
     append(Json(std::vector<double>(row.begin(), row.end())), text);
     text += "]";
   }
   return text + "]}";
+}
+
+template <class Number>
+std::string encode(const std::vector<std::array<Number, 3>>& triples) {
+  const auto* const first = reinterpret_cast<const unsigned char*>(triples.data());
+  return encodeBase64({first, first + triples.size() * sizeof(triples[0])});
+}
+
+Json describeShapes(const SceneBody& body) {
+  Json shapes = Json::array();
+  for (const SceneShape& shape : body.shapes) {
+    shapes.push_back({{"kind", shape.kind}, {"frame", toJson(shape.frame)}, {"size", toJson(shape.size)}});
+    if (!shape.mesh.triangles.empty()) {
+      shapes.back()["points"] = encode(shape.mesh.points);
+      shapes.back()["triangles"] = encode(shape.mesh.triangles);
+    }
+  }
+  return shapes;
+}
+
+/// NaN is null.
+Json describeOutput(const SceneOutput& output) {
+  Json json{{"name", output.name}, {"unit", output.unit}, {"body", output.body}};
+  if (output.measured) {
+    const SceneMeasured& measured = *output.measured;
+    json["measured"] = {{"times", measured.times},
+                        {"values", measured.values},
+                        {"residual", measured.residual},
+                        {"scale", measured.scale}};
+  }
+  return json;
 }
 
 Json describeBodies(const Scene& scene) {
@@ -52,7 +89,8 @@ Json describeBodies(const Scene& scene) {
                       {"radii", toJson(body.ellipsoid.radii)},
                       {"joint", body.joint},
                       {"in_parent", toJson(body.in_parent)},
-                      {"axis", toJson(body.axis)}});
+                      {"axis", toJson(body.axis)},
+                      {"shapes", describeShapes(body)}});
   }
   return bodies;
 }
@@ -78,15 +116,21 @@ std::string makeSceneJson(const Scene& scene) {
                              {"point", toJson(mark.point)},
                              {"direction", toJson(mark.direction)}});
   }
+  json["remarks"] = scene.remarks;
   json["outputs"] = Json::array();
   for (const SceneOutput& output : scene.outputs) {
-    json["outputs"].push_back({{"name", output.name}, {"unit", output.unit}});
+    json["outputs"].push_back(describeOutput(output));
   }
   std::string text = formatJson(json);
   text.back() = ',';
   text += "\"motions\":[";
   for (const SceneMotion& motion : scene.motions) {
     text += (text.back() == '[' ? "" : ",") + makeMotionJson(motion);
+  }
+  text += "],\"modes\":[";
+  for (const SceneMode& mode : scene.modes) {
+    text += (text.back() == '[' ? "{\"frequency\":" : ",{\"frequency\":") + toText(mode.frequency) +
+            ",\"damping\":" + toText(mode.damping_ratio) + ",\"poses\":" + makePosesJson(mode.poses) + "}";
   }
   return text + "]}";
 }

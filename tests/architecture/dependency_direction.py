@@ -24,7 +24,7 @@ ALLOWED = {
     "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store"},
     "diagnosis": {"base", "experiment", "simulation", "models", "data", "estimation", "inference", "kernels"},
     "results": {"base", "experiment", "simulation", "data", "estimation", "analysis", "store"},
-    "report": {"base", "experiment", "simulation", "analysis", "store", "results"},
+    "report": {"base", "experiment", "simulation", "view", "analysis", "store", "results"},
     "study": {
         "base",
         "experiment",

@@ -15,16 +15,13 @@ export function findFrame(times, time) {
   return { frame, share: times.length > 1 ? Math.min(Math.max((time - times[frame]) / width, 0), 1) : 0 };
 }
 
-export function setPose(object, motion, bodies, body, { frame, share }) {
-  const first = toMatrix(motion.poses, (frame * bodies + body) * NUMBERS);
-  const place = new Vector3(), turn = new Quaternion(), scale = new Vector3();
-  first.decompose(place, turn, scale);
+export function setPose(object, poses, bodies, body, { frame, share }) {
+  const scale = new Vector3();
+  toMatrix(poses, (frame * bodies + body) * NUMBERS).decompose(object.position, object.quaternion, scale);
   if (share > 0) {
-    const nextPlace = new Vector3(), nextTurn = new Quaternion();
-    toMatrix(motion.poses, ((frame + 1) * bodies + body) * NUMBERS).decompose(nextPlace, nextTurn, scale);
-    place.lerp(nextPlace, share);
-    turn.slerp(nextTurn, share);
+    const place = new Vector3(), turn = new Quaternion();
+    toMatrix(poses, ((frame + 1) * bodies + body) * NUMBERS).decompose(place, turn, scale);
+    object.position.lerp(place, share);
+    object.quaternion.slerp(turn, share);
   }
-  object.position.copy(place);
-  object.quaternion.copy(turn);
 }

@@ -1,12 +1,15 @@
 // The page of a mechanism (page.cpp): reads the scene (scene_json.cpp), moves it and draws its outputs over time.
 import { makeStage } from "./stage.js";
+import { makeMisfits } from "./misfits.js";
 import { makePlots } from "./plots.js";
 
 const scene = JSON.parse(document.getElementById("scene").textContent);
-const state = { time: scene.times[0], playing: false, speed: 1, labels: true, apart: false };
-const end = scene.times[scene.times.length - 1];
+const state = { time: scene.times[0], playing: false, speed: 1, labels: true, apart: false, misfits: true, mode: -1 };
+const PERIOD = 2; // s that a period of a mode takes
+const getEnd = () => (state.mode < 0 ? scene.times[scene.times.length - 1] : PERIOD);
 const stage = scene.bodies.length > 0 ? makeStage(document.getElementById("stage"), scene) : null;
 const plots = makePlots(document.getElementById("plots"), scene);
+const misfits = makeMisfits(scene, stage);
 const controls = document.getElementById("controls");
 
 function add(element, attributes, text) {
@@ -17,7 +20,7 @@ function add(element, attributes, text) {
 }
 
 const play = add("button", { type: "button", onclick: () => setPlaying(!state.playing) }, "Play");
-const slider = add("input", { type: "range", min: 0, max: end, step: "any", value: 0, oninput: () => setTime(+slider.value) });
+const slider = add("input", { type: "range", min: 0, max: getEnd(), step: "any", value: 0, oninput: () => setTime(+slider.value) });
 slider.setAttribute("aria-label", "time");
 const clock = add("output", {});
 const speed = add("select", { onchange: () => (state.speed = +speed.value) });
@@ -27,19 +30,52 @@ for (const value of [0.1, 0.25, 0.5, 1, 2, 5]) {
 }
 const labels = add("button", { type: "button", onclick: () => setLabels(!state.labels) }, "Labels");
 const apart = scene.motions.length > 1 ? add("button", { type: "button", onclick: () => setApart(!state.apart) }, "Side by side") : null;
+const colour = misfits ? add("button", { type: "button", onclick: () => setMisfits(!state.misfits), title: misfits.help }, "Residual") : null;
+if (stage && scene.modes.length > 0) addModes();
 add("button", { type: "button", onclick: () => stage && stage.reset() }, "Reset view");
+for (const remark of [...(misfits ? [misfits.help] : []), ...scene.remarks]) {
+  document.getElementById("plots").prepend(Object.assign(document.createElement("p"), { textContent: remark }));
+}
+
+function addModes() {
+  const motion = add("select", { onchange: () => setMode(+motion.value) });
+  motion.setAttribute("aria-label", "motion");
+  motion.append(new Option("over time", -1, true, true));
+  scene.modes.forEach((mode, i) => motion.append(
+    new Option(`mode ${i + 1}: ${mode.frequency.toPrecision(4)} Hz, damping ${(100 * mode.damping).toPrecision(2)} %`, i)));
+}
 
 function setTime(time) {
-  state.time = Math.min(Math.max(time, 0), end);
+  state.time = Math.min(Math.max(time, 0), getEnd());
   slider.value = state.time;
+  if (state.mode >= 0) {
+    clock.textContent = `${Math.round((360 * state.time) / PERIOD)}\u00b0`;
+    stage.setMode(scene.modes[state.mode], state.time / PERIOD);
+    return;
+  }
   clock.textContent = `${state.time.toFixed(3)} s`;
   plots.setTime(state.time);
   if (stage) stage.setTime(state.time);
+  if (misfits && state.misfits) misfits.show(state.time);
+}
+
+function setMode(mode) {
+  state.mode = mode;
+  slider.max = getEnd();
+  stage.setAlone(mode >= 0);
+  setTime(0);
+  setPlaying(mode >= 0);
+}
+
+function setMisfits(shown) {
+  state.misfits = shown;
+  colour.setAttribute("aria-pressed", shown);
+  shown ? misfits.show(state.time) : misfits.hide();
 }
 
 function setPlaying(playing) {
-  state.playing = playing && end > 0;
-  if (state.playing && state.time >= end) setTime(0);
+  state.playing = playing && getEnd() > 0;
+  if (state.playing && state.time >= getEnd()) setTime(0);
   play.textContent = state.playing ? "Pause" : "Play";
 }
 
@@ -57,10 +93,10 @@ function setApart(isApart) {
 
 const keys = {
   " ": () => setPlaying(!state.playing),
-  ArrowRight: () => setTime(state.time + end / 200),
-  ArrowLeft: () => setTime(state.time - end / 200),
+  ArrowRight: () => setTime(state.time + getEnd() / 200),
+  ArrowLeft: () => setTime(state.time - getEnd() / 200),
   Home: () => setTime(0),
-  End: () => setTime(end),
+  End: () => setTime(getEnd()),
   l: () => setLabels(!state.labels),
   r: () => stage && stage.reset(),
 };
@@ -76,15 +112,16 @@ let last = performance.now();
 function tick(now) {
   if (state.playing) {
     setTime(state.time + ((now - last) / 1000) * state.speed);
-    if (state.time >= end) setPlaying(false);
+    if (state.time >= getEnd()) state.mode < 0 ? setPlaying(false) : setTime(0);
   }
   last = now;
-  if (stage) stage.render();
+  if (stage) stage.render(false);
   requestAnimationFrame(tick);
 }
 
 document.documentElement.classList.toggle("moving", stage !== null);
 setLabels(true);
+if (misfits) setMisfits(true);
 setTime(0);
 requestAnimationFrame(tick);
 window.twinmap = { scene, state, stage, setTime, setPlaying }; // for tests and for the curious

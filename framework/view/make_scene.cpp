@@ -1,13 +1,13 @@
-#include "framework/view/scene.hpp"
+#include "framework/view/make_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/tree.hpp"
-#include "framework/models/mechanism/model_context.hpp"
+#include "framework/view/modes.hpp"
+#include "framework/view/point_values.hpp"
+#include "framework/view/shapes.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap::view {
@@ -44,6 +44,15 @@ Ellipsoid calcEllipsoid(const BodyValues<double>& body) {
   return ellipsoid;
 }
 
+std::size_t countMeshes(const SystemSpec& system) {
+  std::size_t count = 0;
+  for (const BodySpec& body : system.bodies) {
+    count += std::count_if(body.shapes.begin(), body.shapes.end(),
+                           [](const ShapeSpec& shape) { return shape.mesh.has_value(); });
+  }
+  return count;
+}
+
 void addBodies(const ModelSpec& model, const SystemValues<double>& values, Scene& scene) {
   scene.bodies.emplace_back();
   scene.bodies.back().name = "ground";
@@ -53,6 +62,12 @@ void addBodies(const ModelSpec& model, const SystemValues<double>& values, Scene
     const Vector axis = hasAxis(body.type) ? body.axis : Vector{};
     scene.bodies.push_back({model.system.bodies[i - 1].name.text, body.parent, body.mass > 0.0,
                             calcEllipsoid(body), getEnumText(body.type), body.in_parent, axis});
+  }
+  const std::size_t meshes = countMeshes(model.system);
+  for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+    SceneBody& body = scene.bodies[i];
+    body.shapes = makeShapes(model.system.bodies[i - 1], body.ellipsoid,
+                             kMostTriangles / std::max<std::size_t>(meshes, 1), scene.remarks);
   }
 }
 
@@ -116,27 +131,6 @@ Eigen::VectorXd makeTimes(const ModelSpec& model) {
                         : Eigen::VectorXd(Eigen::VectorXd::Zero(1));
 }
 
-std::vector<Pose> calcPoses(const SystemValues<double>& values, const std::vector<double>& coordinates) {
-  const std::vector<double> still(coordinates.size(), 0.0);
-  std::vector<Pose> poses;
-  for (const auto& motion : equations::calcMotions(values, coordinates, still)) {
-    poses.push_back(motion.pose);
-  }
-  return poses;
-}
-
-/// A system's numbers at a point.
-struct PointValues {
-  PointValues(const ModelSpec& model, const Eigen::VectorXd& point) : names(model.system), numbers(model) {
-    numbers.update(point);
-    values = equations::calcSystemValues(model.system, names, numbers.getValues());
-  }
-
-  SystemNames names;
-  ModelNumbers numbers;
-  SystemValues<double> values;
-};
-
 }  // namespace
 
 void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion,
@@ -161,25 +155,28 @@ void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, c
   for (Eigen::Index i = n; scene.motions.empty() && i < layout.getOutputCount(); ++i) {
     scene.outputs.push_back({layout.output_names[i], layout.output_units[i]});
   }
-  SceneMotion drawn{motion, {}, Eigen::MatrixXd(layout.getOutputCount() - n, frames)};
+  SceneMotion drawn{motion,
+                    {},
+                    Eigen::MatrixXd(layout.getOutputCount() - n, frames),
+                    response.col(0).head(n * frames).reshaped(frames, n).transpose()};
   for (Eigen::Index output = n; output < layout.getOutputCount(); ++output) {
     drawn.outputs.row(output - n) = response.col(0).segment(layout.getRow(output, 0), frames).transpose();
   }
   for (Eigen::Index frame = 0; has_bodies && frame < frames; ++frame) {
-    std::vector<double> q;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      q.push_back(response(layout.getRow(i, frame), 0));
-    }
-    drawn.poses.push_back(calcPoses(at->values, q));
+    const auto q = drawn.coordinates.col(frame);
+    drawn.poses.push_back(calcPoses(at->values, {q.begin(), q.end()}));
   }
   scene.motions.push_back(std::move(drawn));
 }
 
-Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
+namespace {
+
+Scene makeSceneAt(Eigen::VectorXd times, const ExperimentSpec& experiment, const Eigen::VectorXd& point,
+                  const std::string& motion) {
   const ModelSpec& model = experiment.model;
   Scene scene;
   scene.name = experiment.name.text;
-  scene.times = makeTimes(model);
+  scene.times = std::move(times);
   if (!model.source) {
     const PointValues at(model, point);
     scene.gravity = at.values.gravity;
@@ -189,6 +186,18 @@ Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, 
   }
   addMotion(experiment, point, motion, scene);
   return scene;
+}
+
+}  // namespace
+
+Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
+  Scene scene = makeSceneAt(makeTimes(experiment.model), experiment, point, motion);
+  addModes(experiment.model, point, scene);
+  return scene;
+}
+
+Scene makeStill(const ExperimentSpec& experiment, const Eigen::VectorXd& point) {
+  return makeSceneAt(Eigen::VectorXd::Zero(1), experiment, point, "");
 }
 
 }  // namespace twinmap::view

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "framework/experiment/experiment_spec.hpp"
+#include "framework/view/scene.hpp"
+
+namespace twinmap::view {
+
+/// The mechanism of an experiment at a point of its parameters (collectSampled), at rest in its initial
+/// state where it has no duration. `motion`: what the motion is called. Throws ExperimentError for a model
+/// that is wrong, std::runtime_error where the simulation fails.
+Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion);
+
+/// The same as it begins.
+Scene makeStill(const ExperimentSpec& experiment, const Eigen::VectorXd& point);
+
+/// Adds a motion at another point.
+void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion,
+               Scene& scene);
+
+}  // namespace twinmap::view
