@@ -95,7 +95,9 @@ export class Machine {
     const marks = scene.marks.map((mark) => ({
       body: mark.body, color: new Color(MARKS[mark.kind]), matrix: new Matrix4().makeTranslation(...mark.point),
     }));
-    this.ellipsoids = new Copies(new SphereGeometry(1, 16, 10), solid(), listEllipsoids(scene, size, this.color), this.root);
+    const ellipsoids = listEllipsoids(scene, size, this.color);
+    const corners = ellipsoids.length > 20 ? [10, 7] : [20, 12]; // of many, which are small, coarser ones take a third of the time
+    this.ellipsoids = new Copies(new SphereGeometry(1, ...corners), solid(), ellipsoids, this.root);
     const rod = new CylinderGeometry(0.012 * size, 0.012 * size, 0.16 * size, 8), ball = new SphereGeometry(0.025 * size, 10, 6);
     this.parts = [
       this.ellipsoids,
