@@ -48,6 +48,7 @@ class ExperimentWriter {
     addActuators();
     addClosures();
     noteFrames();
+    noteGround(robot_, assembly_);
     const std::string experiment =
         writeParameters() + "system:\n  gravity: " + writeGravity() + "\n  bodies:\n" + bodies +
         writeList("force_laws", forces_) + writeList("springs", springs_) + writeList("dampers", dampers_) +

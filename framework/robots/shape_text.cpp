@@ -44,6 +44,16 @@ std::string locateMesh(const std::string& robot_file, const std::string& mesh) {
   return is_elsewhere ? mesh : (std::filesystem::path(robot_file).parent_path() / mesh).string();
 }
 
+void noteGround(Robot& robot, const Assembly& assembly) {
+  for (const Link& link : robot.links) {
+    for (const Visual& visual : link.visuals) {
+      if (assembly.places.at(link.name).body == nullptr) {
+        robot.leaveOut(visual.line, "<visual> of the ground", "a drawing; it moves nothing");
+      }
+    }
+  }
+}
+
 std::string writeShapes(const Robot& robot, const Assembly& assembly, const Link& body) {
   std::string text;
   for (const Link& link : robot.links) {

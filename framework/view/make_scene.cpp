@@ -5,6 +5,7 @@
 
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/make_simulator.hpp"
+#include "framework/simulation/simulation_failure.hpp"
 #include "framework/view/modes.hpp"
 #include "framework/view/point_values.hpp"
 #include "framework/view/shapes.hpp"
@@ -110,7 +111,7 @@ void addMarks(const ModelSpec& model, const SystemNames& names, const NamedValue
 }
 
 /// All coordinates, then the experiment's outputs.
-ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coordinates) {
+ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coordinates, double end) {
   ModelSpec drawn = model;
   std::vector<OutputSpec> outputs;
   for (const std::string& coordinate : coordinates) {
@@ -119,8 +120,8 @@ ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coor
     output.coordinate = Name{coordinate, {}};
     outputs.push_back(output);
   }
-  constexpr double kAnInstant = 1e-9;  // s: of what has modes alone, its beginning is drawn
-  drawn.simulation.duration = std::max(drawn.simulation.duration, kAnInstant);
+  constexpr double kAnInstant = 1e-9;  // s: of what stands still or has modes alone, its beginning is drawn
+  drawn.simulation.duration = std::max(end, kAnInstant);
   drawn.outputs.insert(drawn.outputs.begin(), outputs.begin(), outputs.end());
   return drawn;
 }
@@ -142,14 +143,14 @@ void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, c
     at.emplace(experiment.model, point);
     coordinates = at->names.getCoordinateNames();
   }
-  ModelSpec model = makeDrawn(experiment.model, coordinates);
+  ModelSpec model = makeDrawn(experiment.model, coordinates, scene.times[scene.times.size() - 1]);
   const std::unique_ptr<Simulator> simulator = makeTrustedSimulator(model, scene.times);
   const ResponseLayout& layout = simulator->getLayout();
   Eigen::MatrixXd response(layout.getRowCount(), 1);
   SampleStatus status;
   simulator->simulate(Eigen::MatrixXd(point), response, &status);
   if (!status.ok) {
-    throw std::runtime_error("the simulation failed: " + status.reason);
+    throw SimulationFailure("the simulation failed: " + status.reason);
   }
   const Eigen::Index frames = scene.times.size(), n = static_cast<Eigen::Index>(coordinates.size());
   for (Eigen::Index i = n; scene.motions.empty() && i < layout.getOutputCount(); ++i) {
@@ -191,9 +192,15 @@ Scene makeSceneAt(Eigen::VectorXd times, const ExperimentSpec& experiment, const
 }  // namespace
 
 Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
-  Scene scene = makeSceneAt(makeTimes(experiment.model), experiment, point, motion);
-  addModes(experiment.model, point, scene);
-  return scene;
+  try {
+    Scene scene = makeSceneAt(makeTimes(experiment.model), experiment, point, motion);
+    addModes(experiment.model, point, scene);
+    return scene;
+  } catch (const SimulationFailure& failure) {
+    Scene still = makeStill(experiment, point);
+    still.remarks.push_back("the mechanism stands still: " + std::string(failure.what()));
+    return still;
+  }
 }
 
 Scene makeStill(const ExperimentSpec& experiment, const Eigen::VectorXd& point) {

@@ -8,8 +8,9 @@
 namespace twinmap::view {
 
 /// The mechanism of an experiment at a point of its parameters (collectSampled), at rest in its initial
-/// state where it has no duration. `motion`: what the motion is called. Throws ExperimentError for a model
-/// that is wrong, std::runtime_error where the simulation fails.
+/// state where it has no duration. `motion`: what the motion is called. It stands still, with a remark,
+/// where the simulation fails. Throws ExperimentError for a model that is wrong, SimulationFailure where it
+/// cannot even begin.
 Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion);
 
 /// The same as it begins.

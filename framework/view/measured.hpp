@@ -12,12 +12,12 @@ struct Measurement {
   const Eigen::VectorXd &measured, &updated, &noise_stddev;
 };
 
-/// Adds to the outputs of a scene, whose last motion is the updated model's, what was measured of them and
-/// the residuals; and to the motions the measured one. `experiment`, `point`: of the updated model.
+/// Adds what was measured and the residuals to the outputs of a scene, whose last motion is the updated
+/// model's; and the measured motion. `experiment`, `point`: of the updated model.
 ///
-/// Of the poses that explain the sensors of coordinates and positions, the measured motion has those nearest
-/// to the updated model's: coordinates that no sensor determines follow it. There is none without such
-/// sensors and none of mechanisms with loops.
+/// The measured motion has the poses nearest to the updated model's that explain the sensors of coordinates
+/// and positions. Coordinates that no sensor determines follow that model. There is none without such
+/// sensors, and none of loops.
 void addMeasurement(const ExperimentSpec& experiment, const Eigen::VectorXd& point,
                     const Measurement& measurement, Scene& scene);
 

@@ -7,6 +7,7 @@
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/mechanism/lanes/lane_modes.hpp"
 #include "framework/models/mechanism/lanes/lane_programs.hpp"
+#include "framework/models/mechanism/sampled_keys.hpp"
 #include "framework/simulation/simulation_failure.hpp"
 #include "framework/view/point_values.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -97,7 +98,8 @@ void addModes(const ModelSpec& model, const VectorXd& point, Scene& scene) {
   if (model.source || !model.system.constraints.empty() || !model.system.motions.empty()) {
     return;
   }
-  ModelContext context(model);
+  const ModelSpec completed = addControllerStates(model);
+  ModelContext context(completed);
   LanePrograms programs(context, nullptr);
   if (!programs.getObstacle().empty()) {
     return;
@@ -105,7 +107,7 @@ void addModes(const ModelSpec& model, const VectorXd& point, Scene& scene) {
   try {
     const LaneModel& lanes = programs.getValues();
     const VectorXd center = solveBoxCenter(context, lanes), none;
-    const VectorXd equilibrium = LaneStart(model, lanes, center, none).solveEquilibrium(point);
+    const VectorXd equilibrium = LaneStart(completed, lanes, center, none).solveEquilibrium(point);
     ModeDrawer(model, point, scene).add(LaneModes(lanes).calcMatrix(point, equilibrium), equilibrium);
   } catch (const SimulationFailure&) {
     scene.modes.clear();  // it does not rest anywhere near

@@ -5,9 +5,8 @@
 
 namespace twinmap::view {
 
-/// Adds the oscillating modes of the mechanism linearised about the equilibrium that is found from its
-/// initial state, by increasing frequency; none where there is no equilibrium, and none of loops or of a
-/// model that lanes do not simulate.
+/// Adds the oscillating modes, by increasing frequency, about the equilibrium that is found from the initial
+/// state. There are none without an equilibrium, of loops, and of a model that lanes do not simulate.
 void addModes(const ModelSpec& model, const Eigen::VectorXd& point, Scene& scene);
 
 }  // namespace twinmap::view

@@ -71,7 +71,19 @@ ALLOWED = {
         "robots",
         "view",
     },
-    "python": {"base", "experiment", "simulation", "models", "models/fmu", "data", "study", "inference", "diagnosis"},
+    "python": {
+        "base",
+        "experiment",
+        "robots",
+        "simulation",
+        "models",
+        "models/fmu",
+        "view",
+        "data",
+        "study",
+        "inference",
+        "diagnosis",
+    },
 }
 
 # The folders of a room, those that others of it build on first; a room that is not here has no order within.

@@ -62,7 +62,7 @@ const compose = (place, turn, scale) => new Matrix4().compose(place, turn, scale
 function listEllipsoids(scene, size, color) {
   return scene.bodies.flatMap((body, i) => {
     if (!body.mass || body.shapes.length > 0) return [];
-    const scale = new Vector3(...body.radii.map((radius) => Math.max(radius, 0.03 * size)));
+    const scale = new Vector3(...body.radii.map((radius) => Math.max(radius, 0.04 * size)));
     return [{ body: i, matrix: toMatrix(body.ellipsoid).scale(scale), color }];
   });
 }
@@ -96,8 +96,9 @@ export class Machine {
       body: mark.body, color: new Color(MARKS[mark.kind]), matrix: new Matrix4().makeTranslation(...mark.point),
     }));
     const ellipsoids = listEllipsoids(scene, size, this.color);
-    const corners = ellipsoids.length > 20 ? [10, 7] : [20, 12]; // of many, which are small, coarser ones take a third of the time
-    this.ellipsoids = new Copies(new SphereGeometry(1, ...corners), solid(), ellipsoids, this.root);
+    const fineness = ellipsoids.length > 20 ? 5 : ellipsoids.length > 4 ? 10 : 20; // of many, which are small, the coarse take a third of the time
+    const glass = new MeshLambertMaterial({ transparent: true, opacity: 0.75 * opacity }); // they may hide each other
+    this.ellipsoids = new Copies(new SphereGeometry(1, 2 * fineness, fineness + 2), glass, ellipsoids, this.root);
     const rod = new CylinderGeometry(0.012 * size, 0.012 * size, 0.16 * size, 8), ball = new SphereGeometry(0.025 * size, 10, 6);
     this.parts = [
       this.ellipsoids,

@@ -1,7 +1,8 @@
 // The mechanism in WebGL; null where a browser has none.
-import { AxesHelper, Color, DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { AxesHelper, Box3, Color, DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Machine } from "./machine.js";
+import { toMatrix } from "./poses.js";
 
 const COLORS = ["#4c78a8", "#54a24b", "#f58518"]; // of motions, as in view.css
 
@@ -16,19 +17,28 @@ function makeRenderer(stage) {
   }
 }
 
-// How far the mechanism reaches from the middle of its places.
+// The middle of all that is ever drawn, and how far it reaches from there.
 function measure(scene) {
-  const low = new Vector3(Infinity, Infinity, Infinity), high = low.clone().negate();
-  for (const motion of scene.motions) {
-    for (let i = 0; i < motion.poses.length; i += 12) {
-      const at = new Vector3(motion.poses[i + 9], motion.poses[i + 10], motion.poses[i + 11]);
-      low.min(at);
-      high.max(at);
+  const box = new Box3();
+  const spheres = scene.bodies.flatMap((body, i) => (i === 0 ? [] : [
+    { i, center: new Vector3(), radius: 0 },
+    { i, center: new Vector3(...body.ellipsoid.slice(9)), radius: body.shapes.length > 0 ? 0 : Math.max(...body.radii) },
+    ...body.shapes.map(({ frame, size, kind }) => {
+      const half = new Vector3(...size).divideScalar(2);
+      const center = kind === "mesh" ? half.clone().applyMatrix4(toMatrix(frame)) : new Vector3(...frame.slice(9));
+      return { i, center, radius: half.length() };
+    }),
+  ]));
+  const at = new Vector3();
+  for (const { poses } of scene.motions) {
+    for (let first = 0; first < poses.length; first += 12 * scene.bodies.length) {
+      for (const { i, center, radius } of spheres) {
+        at.copy(center).applyMatrix4(toMatrix(poses, first + 12 * i));
+        box.expandByPoint(at.clone().addScalar(radius)).expandByPoint(at.addScalar(-radius));
+      }
     }
   }
-  const reaches = scene.bodies.flatMap((body) => [...body.radii, ...body.shapes.flatMap((shape) => shape.size)]);
-  const middle = low.clone().add(high).multiplyScalar(0.5);
-  return { middle, size: Math.max(low.distanceTo(high) / 2 + Math.max(...reaches, 0), 1e-6) };
+  return { middle: box.getCenter(new Vector3()), size: Math.max(box.getSize(at).length() / 2, 1e-6) };
 }
 
 function makeLabels(stage, scene) {
@@ -55,7 +65,7 @@ export function makeStage(stage, scene) {
   if (renderer === null) return null;
   const { middle, size } = measure(scene);
   const world = makeWorld(size);
-  const machines = scene.motions.map((motion, i) => new Machine(scene, motion, COLORS[i % COLORS.length], i === 0 && scene.motions.length === 1 ? 1 : i === 0 ? 0.85 : 0.5, size));
+  const machines = scene.motions.map((motion, i) => new Machine(scene, motion, COLORS[i % COLORS.length], i === 0 ? 1 : 0.6, size));
   machines.forEach((machine) => world.add(machine.root));
   const camera = new PerspectiveCamera(40, 1, 0.01 * size, 100 * size);
   const controls = new OrbitControls(camera, renderer.domElement);
@@ -76,7 +86,7 @@ export function makeStage(stage, scene) {
   function reset() {
     const side = Math.abs(up.z) > 0.5 ? new Vector3(0.5, -0.8, 0.35) : new Vector3(0.35, 0.35, 0.9);
     camera.up.copy(up);
-    camera.position.copy(middle).addScaledVector(side.normalize(), 2.8 * size);
+    camera.position.copy(middle).addScaledVector(side.normalize(), 2.6 * size);
     controls.target.copy(middle);
     controls.update();
     changed = true;
@@ -100,7 +110,7 @@ export function makeStage(stage, scene) {
     labels.forEach((label, i) => {
       const at = machines[0].place(i, scene.bodies[i].ellipsoid.slice(9)).add(machines[0].root.position).project(camera);
       label.style.display = shown && i > 0 && Math.abs(at.z) < 1 ? "" : "none";
-      label.style.transform = `translate(${((at.x + 1) / 2) * width}px, ${((1 - at.y) / 2) * height}px)`;
+      label.style.transform = `translate(${((at.x + 1) / 2) * width + 8}px, ${((1 - at.y) / 2) * height + 8}px)`;
     });
   }
 

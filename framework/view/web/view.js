@@ -28,13 +28,19 @@ speed.setAttribute("aria-label", "speed");
 for (const value of [0.1, 0.25, 0.5, 1, 2, 5]) {
   speed.append(new Option(`${value} x`, value, value === 1, value === 1));
 }
-const labels = add("button", { type: "button", onclick: () => setLabels(!state.labels) }, "Labels");
-const apart = scene.motions.length > 1 ? add("button", { type: "button", onclick: () => setApart(!state.apart) }, "Side by side") : null;
+const labels = stage ? add("button", { type: "button", onclick: () => setLabels(!state.labels) }, "Labels") : null;
+const apart = stage && scene.motions.length > 1 ? add("button", { type: "button", onclick: () => setApart(!state.apart) }, "Side by side") : null;
 const colour = misfits ? add("button", { type: "button", onclick: () => setMisfits(!state.misfits), title: misfits.help }, "Residual") : null;
 if (stage && scene.modes.length > 0) addModes();
-add("button", { type: "button", onclick: () => stage && stage.reset() }, "Reset view");
-for (const remark of [...(misfits ? [misfits.help] : []), ...scene.remarks]) {
-  document.getElementById("plots").prepend(Object.assign(document.createElement("p"), { textContent: remark }));
+if (stage) add("button", { type: "button", onclick: () => stage.reset() }, "Reset view");
+const below = document.getElementById("plots");
+const makeText = (element, textContent) => Object.assign(document.createElement(element), { textContent });
+if (misfits) below.prepend(makeText("p", misfits.help));
+if (scene.remarks.length > 0) {
+  const list = document.createElement("details");
+  list.append(makeText("summary", `Drawn otherwise than the experiment says: ${scene.remarks.length}`));
+  list.append(...scene.remarks.map((remark) => makeText("p", remark)));
+  below.after(list);
 }
 
 function addModes() {
@@ -81,8 +87,9 @@ function setPlaying(playing) {
 
 function setLabels(shown) {
   state.labels = shown;
+  if (!stage) return;
   labels.setAttribute("aria-pressed", shown);
-  if (stage) stage.setLabels(shown);
+  stage.setLabels(shown);
 }
 
 function setApart(isApart) {
@@ -119,7 +126,7 @@ function tick(now) {
   requestAnimationFrame(tick);
 }
 
-document.documentElement.classList.toggle("moving", stage !== null);
+document.documentElement.classList.toggle("moving", stage !== null || scene.bodies.length === 0);
 setLabels(true);
 if (misfits) setMisfits(true);
 setTime(0);
