@@ -18,7 +18,11 @@ using equations::BodyValues;
 using equations::SystemValues;
 using Matrix = algebra::Mat33<double>;
 
-constexpr int kFrames = 201;
+/// As many as a page of 3 MB has room for.
+int countFrames(const ModelSpec& model) {
+  constexpr int kMost = 201, kPoses = 12000;
+  return std::clamp(kPoses / static_cast<int>(1 + model.system.bodies.size()), 51, kMost);
+}
 
 Ellipsoid calcEllipsoid(const BodyValues<double>& body) {
   Ellipsoid ellipsoid;
@@ -128,7 +132,7 @@ ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coor
 
 Eigen::VectorXd makeTimes(const ModelSpec& model) {
   const double duration = model.simulation.duration;
-  return duration > 0.0 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(kFrames, 0.0, duration))
+  return duration > 0.0 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(countFrames(model), 0.0, duration))
                         : Eigen::VectorXd(Eigen::VectorXd::Zero(1));
 }
 

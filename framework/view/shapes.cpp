@@ -57,6 +57,9 @@ SceneShape readMesh(const ShapeSpec& spec, std::size_t most, std::vector<std::st
   }
   SceneShape shape{"mesh", {}, {}};
   shape.mesh = makeMesh(corners, most, shape.frame.origin, shape.size);
+  if (shape.mesh.triangles.empty()) {
+    throw std::runtime_error(spec.mesh->text + ": its triangles have no area");
+  }
   if (shape.mesh.triangles.size() < corners.size() / 3 && corners.size() / 3 > most) {
     remarks.push_back(fmt::format("{}: is drawn with {} of its {} triangles", spec.mesh->text,
                                   shape.mesh.triangles.size(), corners.size() / 3));

@@ -1,11 +1,9 @@
 // Geometry of what bodies look like, in their frames, one for each body.
 import { BoxGeometry, BufferAttribute, BufferGeometry, CapsuleGeometry, CylinderGeometry, SphereGeometry } from "three";
 import { mergeGeometries } from "three/examples/jsm/utils/BufferGeometryUtils.js";
-import { toMatrix } from "./poses.js";
+import { decode, toMatrix } from "./poses.js";
 
 const STEPS = 65535; // of a mesh's grid
-
-const decode = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)).buffer;
 
 function makeMesh(shape) {
   const geometry = new BufferGeometry();

@@ -1,8 +1,8 @@
 // The mechanism in WebGL; null where a browser has none.
-import { AxesHelper, Box3, Color, DirectionalLight, HemisphereLight, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import { AxesHelper, Box3, Color, DirectionalLight, HemisphereLight, Object3D, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Machine } from "./machine.js";
-import { toMatrix } from "./poses.js";
+import { countFrames, setPose, toMatrix } from "./poses.js";
 
 const COLORS = ["#4c78a8", "#54a24b", "#f58518"]; // of motions, as in view.css
 
@@ -29,11 +29,12 @@ function measure(scene) {
       return { i, center, radius: half.length() };
     }),
   ]));
-  const at = new Vector3();
+  const at = new Vector3(), body = new Object3D(), count = scene.bodies.length;
   for (const { poses } of scene.motions) {
-    for (let first = 0; first < poses.length; first += 12 * scene.bodies.length) {
+    for (let frame = 0; frame < countFrames(poses, count); frame += 1) {
       for (const { i, center, radius } of spheres) {
-        at.copy(center).applyMatrix4(toMatrix(poses, first + 12 * i));
+        setPose(body, poses, count, i, { frame, share: 0 });
+        at.copy(center).applyQuaternion(body.quaternion).add(body.position);
         box.expandByPoint(at.clone().addScalar(radius)).expandByPoint(at.addScalar(-radius));
       }
     }
@@ -124,7 +125,7 @@ export function makeStage(stage, scene) {
     machines,
     setTime: and((time) => machines.forEach((machine) => machine.setTime(time))),
     setMode: and((mode, phase) => {
-      const steps = mode.poses.length / (12 * scene.bodies.length) - 1, at = Math.min(phase * steps, steps - 1e-9);
+      const steps = countFrames(mode.poses, scene.bodies.length) - 1, at = Math.min(phase * steps, steps - 1e-9);
       machines[0].setPoses(mode.poses, { frame: Math.floor(at), share: at % 1 });
     }),
     setAlone: and((alone) => machines.forEach((machine, i) => { machine.root.visible = i === 0 || !alone; })),

@@ -2,8 +2,10 @@
 import { makeStage } from "./stage.js";
 import { makeMisfits } from "./misfits.js";
 import { makePlots } from "./plots.js";
+import { decodePoses } from "./poses.js";
 
 const scene = JSON.parse(document.getElementById("scene").textContent);
+[...scene.motions, ...scene.modes].forEach(decodePoses);
 const state = { time: scene.times[0], playing: false, speed: 1, labels: true, apart: false, misfits: true, mode: -1 };
 const PERIOD = 2; // s that a period of a mode takes
 const getEnd = () => (state.mode < 0 ? scene.times[scene.times.length - 1] : PERIOD);

@@ -51,9 +51,22 @@ noise: {stddev: {q: 1e-3, x: 1e-3}}
 """
 
 
+def read_poses(text):
+    """Of each pose the columns of the rotation, then the origin."""
+    numbers = []
+    for x, y, z, w, *origin in struct.iter_unpack("<7f", base64.b64decode(text)):
+        numbers += [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)]
+        numbers += [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)]
+        numbers += [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y), *origin]
+    return numbers
+
+
 def read_scene(page):
     text = re.search(r'<script type="application/json" id="scene">(.*?)</script>', page, re.DOTALL).group(1)
-    return json.loads(text.replace("<\\/", "</"))
+    scene = json.loads(text.replace("<\\/", "</"))
+    for motion in scene["motions"] + scene["modes"]:
+        motion["poses"] = read_poses(motion["poses"])
+    return scene
 
 
 class View(unittest.TestCase):

@@ -90,9 +90,11 @@ test('the poses that are drawn are those of the scene', async () => {
       setTime(scene.times[frame]);
       stage.render();
       stage.machines[0].bodies.forEach((body, i) => {
-        const at = poses.slice((frame * count + i) * 12, (frame * count + i + 1) * 12), m = body.matrixWorld.elements;
-        const drawn = [m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10], m[12], m[13], m[14]];
-        drawn.forEach((value, k) => { worst = Math.max(worst, Math.abs(value - at[k])); });
+        const [x, y, z, w, ...origin] = poses.slice((frame * count + i) * 7, (frame * count + i + 1) * 7);
+        const m = body.matrixWorld.elements;
+        const drawn = [m[0], m[1], m[6], m[8], m[10], m[12], m[13], m[14]];
+        const at = [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (y * z + x * w), 2 * (x * z + y * w), 1 - 2 * (x * x + y * y)];
+        [...at, ...origin].forEach((value, k) => { worst = Math.max(worst, Math.abs(value - drawn[k])); });
       });
     }
     return worst;
