@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/make_simulator.hpp"
@@ -87,6 +88,48 @@ void addLines(const SystemValues<double>& values, Scene& scene) {
     if (closure.kind == equations::ClosureKind::kRod) {
       scene.lines.push_back(
           {"rod", closure.from.body, closure.to.body, closure.from.point, closure.to.point});
+    }
+  }
+}
+
+template <class Element, class = void>
+constexpr bool kActsOnCoordinate = false;
+template <class Element>
+constexpr bool kActsOnCoordinate<Element, std::void_t<decltype(std::declval<Element>().coordinate)>> = true;
+
+/// What acts on coordinates is named at their joints.
+void addActing(const SystemNames& names, const SystemValues<double>& values, Scene& scene) {
+  const auto add = [&](int coordinate, const std::string& kind) {
+    std::vector<std::string>& acting =
+        scene.bodies[names.getCoordinates()[static_cast<std::size_t>(coordinate)].body].acting;
+    if (std::find(acting.begin(), acting.end(), kind) == acting.end()) {
+      acting.push_back(kind);
+    }
+  };
+  values.elements.forEachList([&](const auto& list) {
+    using Element = typename std::decay_t<decltype(list)>::value_type;
+    if constexpr (kActsOnCoordinate<Element>) {
+      for (const Element& element : list) {
+        add(element.coordinate, Element::kKind.noun);
+      }
+    }
+  });
+  for (const auto& closure : values.closures) {
+    if (closure.kind == equations::ClosureKind::kGear) {
+      add(closure.coordinate, "gear");
+    }
+  }
+}
+
+/// Of coincident points, points in planes and what rolls, once each.
+void addConstraints(const SystemValues<double>& values, Scene& scene) {
+  int last = -1;
+  for (const auto& closure : values.closures) {
+    const bool has_point =
+        closure.kind == equations::ClosureKind::kPlane || closure.kind == equations::ClosureKind::kRolling;
+    if (has_point && closure.constraint != last) {
+      scene.marks.push_back({"constraint", "", closure.to.body, closure.to.point, {}});
+      last = closure.constraint;
     }
   }
 }
@@ -187,6 +230,8 @@ Scene makeSceneAt(Eigen::VectorXd times, const ExperimentSpec& experiment, const
     scene.gravity = at.values.gravity;
     addBodies(model, at.values, scene);
     addLines(at.values, scene);
+    addActing(at.names, at.values, scene);
+    addConstraints(at.values, scene);
     addMarks(model, at.names, at.numbers.getValues(), at.values, scene);
   }
   addMotion(experiment, point, motion, scene);

@@ -77,6 +77,15 @@ std::vector<Point> findHull(std::vector<Point> points) {
   return hull;
 }
 
+/// ": spring, damper".
+std::string listActing(const SceneBody& body) {
+  std::string text;
+  for (const std::string& kind : body.acting) {
+    text += (text.empty() ? ": " : ", ") + kind;
+  }
+  return text;
+}
+
 class Drawing {
  public:
   Drawing(const Scene& scene, const std::vector<Pose>& poses)
@@ -217,8 +226,8 @@ class Drawing {
     constexpr double kLength = 18.0;  // pixels, of an axis in the picture's plane
     add(R"(<line class="axis" x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}"/>)", at.x - kLength * along.x,
         at.y - kLength * along.y, at.x + kLength * along.x, at.y + kLength * along.y);
-    add(R"(<circle class="joint" cx="{:.1f}" cy="{:.1f}" r="4"><title>{} of {}</title></circle>)", at.x, at.y,
-        body.joint, escapeHtml(body.name));
+    add(R"(<circle class="joint" cx="{:.1f}" cy="{:.1f}" r="4"><title>{} of {}{}</title></circle>)", at.x,
+        at.y, body.joint, escapeHtml(body.name), listActing(body));
   }
 
   void drawLine(const std::string& kind, const Vector& from, const Vector& to) {
@@ -270,6 +279,7 @@ constexpr const char* kStyle = R"(<style>
 .mechanism .signal { fill: none; stroke: #4c78a8; stroke-width: 1.5; }
 .mechanism .force { fill: #f58518; }
 .mechanism .sensor { fill: #72b7b2; }
+.mechanism .constraint { fill: none; stroke: #eeca3b; stroke-width: 2; }
 .mechanism .contact { fill: #9d755d; }
 @media (prefers-color-scheme: dark) { .mechanism { color: #ddd; background: #181818; } .mechanism .joint { fill: #181818; } }
 </style>

@@ -44,6 +44,7 @@ struct SceneBody {
   Pose in_parent;     ///< joint frame
   Vector axis;        ///< in it; zero for joints without one
   std::vector<SceneShape> shapes{};
+  std::vector<std::string> acting{};  ///< kinds of elements on its joint's coordinates: spring, stop, gear
 };
 
 /// A line between points of two bodies: a spring, a damper, a rod.

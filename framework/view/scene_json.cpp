@@ -122,6 +122,7 @@ Json describeBodies(const Scene& scene) {
                       {"joint", body.joint},
                       {"in_parent", toJson(body.in_parent)},
                       {"axis", toJson(body.axis)},
+                      {"acting", body.acting},
                       {"shapes", describeShapes(body)}});
   }
   return bodies;

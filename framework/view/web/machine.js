@@ -8,7 +8,7 @@ import { findFrame, setPose, toMatrix } from "./poses.js";
 import { makeShapes } from "./shapes.js";
 
 const LINES = { spring: "#54a24b", damper: "#b279a2", rod: "#888888" };
-const MARKS = { force: "#f58518", sensor: "#72b7b2", contact: "#9d755d" };
+const MARKS = { force: "#f58518", sensor: "#72b7b2", contact: "#9d755d", constraint: "#eeca3b" };
 const MISFIT = new Color("#d6004c");
 const UP = new Vector3(0, 1, 0);
 

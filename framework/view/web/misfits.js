@@ -10,7 +10,7 @@ export function makeMisfits(scene, stage) {
 
   function calc(time) {
     const { frame, share } = findFrame(scene.times, time), at = share < 0.5 ? frame : frame + 1;
-    const shares = scene.bodies.map(() => 0), texts = scene.bodies.map((body) => body.name);
+    const shares = scene.bodies.map(() => 0), texts = scene.bodies.map((body) => body.label);
     for (const { body, measured } of outputs) {
       const residual = measured.residual[Math.min(at, measured.residual.length - 1)];
       const share = residual === null ? 0 : Math.min(residual / FULL[measured.scale], 1);
@@ -31,7 +31,7 @@ export function makeMisfits(scene, stage) {
     },
     hide: () => {
       stage.setMisfits(machine, null);
-      scene.bodies.forEach((body, i) => i > 0 && stage.setText(i, body.name));
+      scene.bodies.forEach((body, i) => i > 0 && stage.setText(i, body.label));
     },
   };
 }

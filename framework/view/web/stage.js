@@ -46,7 +46,7 @@ function makeLabels(stage, scene) {
   return scene.bodies.map((body, i) => {
     const label = document.createElement("span");
     label.className = "label";
-    label.textContent = i > 0 ? body.name : "";
+    label.textContent = i > 0 ? body.label : "";
     stage.append(label);
     return label;
   });

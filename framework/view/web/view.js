@@ -6,6 +6,11 @@ import { decodePoses } from "./poses.js";
 
 const scene = JSON.parse(document.getElementById("scene").textContent);
 [...scene.motions, ...scene.modes].forEach(decodePoses);
+const MOST_TOLD = 10; // bodies of which labels tell what acts on them; of more, names alone are crowded enough
+scene.bodies.forEach((body) => {
+  const told = body.acting.length > 0 && scene.bodies.length <= MOST_TOLD;
+  body.label = told ? `${body.name}: ${body.acting.join(", ")}` : body.name;
+});
 const state = { time: scene.times[0], playing: false, speed: 1, labels: true, apart: false, misfits: true, mode: -1 };
 const PERIOD = 2; // s that a period of a mode takes
 const getEnd = () => (state.mode < 0 ? scene.times[scene.times.length - 1] : PERIOD);

@@ -123,6 +123,19 @@ class View(unittest.TestCase):
             self.assertEqual(classes.count(kind), count, kind)
         self.assertEqual([text.text for text in root.iter(f"{SVG}text")], ["arm", "bob"])
 
+    def test_what_acts_on_joints_and_between_bodies_is_named_there(self):
+        scene = {name: self.draw(name) for name in ("duffing/cart", "mechanisms/stick_slip", "mechanisms/slider_crank")}
+        self.assertEqual(scene["duffing/cart"]["bodies"][1]["acting"], ["spring", "damper", "force law"])
+        self.assertIn("friction", scene["mechanisms/stick_slip"]["bodies"][1]["acting"])
+        self.assertEqual([mark["kind"] for mark in scene["mechanisms/slider_crank"]["marks"]], ["constraint"])
+        picture = (self.folder / "picture.svg").read_text()
+        self.assertIn('class="constraint"', picture)
+
+    def draw(self, name):
+        files = ("--out", self.folder / "page.html", "--svg", self.folder / "picture.svg")
+        self.assertEqual(call("view", EXPERIMENTS / f"{name}.yaml", *files).returncode, 0, name)
+        return read_scene((self.folder / "page.html").read_text())
+
     def test_texts_of_the_experiment_stay_texts(self):
         self.file.write_text(PENDULUM.replace("name: pen<du>lum", 'name: "</script><b>"').replace("arm", "arm_b"))
         result = call("view", self.file, "--out", self.folder / "page.html")
