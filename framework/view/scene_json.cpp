@@ -50,8 +50,7 @@ std::array<double, 4> calcQuaternion(const algebra::Mat33<double>& r) {
   }
 }
 
-/// Frame by frame, body by body its quaternion and origin as seven floats, in base64: a page of 60 bodies
-/// and three motions stays below 3 MB.
+/// Seven floats a pose, quaternion and origin, in base64: 60 bodies and three motions stay below 3 MB.
 std::string makePosesJson(const std::vector<std::vector<Pose>>& frames) {
   std::vector<unsigned char> bytes;
   for (const std::vector<Pose>& frame : frames) {
