@@ -6,6 +6,7 @@
 
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/make_simulator.hpp"
+#include "framework/models/mechanism/model_context.hpp"
 #include "framework/simulation/simulation_failure.hpp"
 #include "framework/view/modes.hpp"
 #include "framework/view/point_values.hpp"
@@ -219,8 +220,9 @@ void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, c
 
 namespace {
 
-Scene makeSceneAt(Eigen::VectorXd times, const ExperimentSpec& experiment, const Eigen::VectorXd& point,
-                  const std::string& motion) {
+/// All but the motion.
+Scene describeMechanism(Eigen::VectorXd times, const ExperimentSpec& experiment,
+                        const Eigen::VectorXd& point) {
   const ModelSpec& model = experiment.model;
   Scene scene;
   scene.name = experiment.name.text;
@@ -234,7 +236,17 @@ Scene makeSceneAt(Eigen::VectorXd times, const ExperimentSpec& experiment, const
     addConstraints(at.values, scene);
     addMarks(model, at.names, at.numbers.getValues(), at.values, scene);
   }
-  addMotion(experiment, point, motion, scene);
+  return scene;
+}
+
+/// As the file says that it begins: neither an equilibrium is sought nor are loops closed.
+Scene makeUnsolved(const ExperimentSpec& experiment, const Eigen::VectorXd& point) {
+  Scene scene = describeMechanism(Eigen::VectorXd::Zero(1), experiment, point);
+  ModelContext context(experiment.model);
+  context.numbers.update(point);
+  const Eigen::VectorXd q = calcInitialValues(context).coordinates;
+  const PointValues at(experiment.model, point);
+  scene.motions.push_back({"", {calcPoses(at.values, {q.begin(), q.end()})}, Eigen::MatrixXd(0, 1), q});
   return scene;
 }
 
@@ -242,10 +254,14 @@ Scene makeSceneAt(Eigen::VectorXd times, const ExperimentSpec& experiment, const
 
 Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
   try {
-    Scene scene = makeSceneAt(makeTimes(experiment.model), experiment, point, motion);
+    Scene scene = describeMechanism(makeTimes(experiment.model), experiment, point);
+    addMotion(experiment, point, motion, scene);
     addModes(experiment.model, point, scene);
     return scene;
   } catch (const SimulationFailure& failure) {
+    if (experiment.model.source) {
+      throw;
+    }
     Scene still = makeStill(experiment, point);
     still.remarks.push_back("the mechanism stands still: " + std::string(failure.what()));
     return still;
@@ -253,7 +269,13 @@ Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, 
 }
 
 Scene makeStill(const ExperimentSpec& experiment, const Eigen::VectorXd& point) {
-  return makeSceneAt(Eigen::VectorXd::Zero(1), experiment, point, "");
+  try {
+    Scene scene = describeMechanism(Eigen::VectorXd::Zero(1), experiment, point);
+    addMotion(experiment, point, "", scene);
+    return scene;
+  } catch (const SimulationFailure&) {
+    return makeUnsolved(experiment, point);
+  }
 }
 
 }  // namespace twinmap::view

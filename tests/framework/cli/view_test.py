@@ -123,6 +123,15 @@ class View(unittest.TestCase):
             self.assertEqual(classes.count(kind), count, kind)
         self.assertEqual([text.text for text in root.iter(f"{SVG}text")], ["arm", "bob"])
 
+    def test_what_cannot_be_simulated_stands_still_and_says_why(self):
+        text = PENDULUM.replace("pen<du>lum", "pendulum").replace("simulation: {", "simulation: {max_steps: 3, ")
+        self.file.write_text(text)
+        self.assertEqual(call("simulate", self.file).returncode, 1)
+        scene = read_scene(self.view()[0])
+        self.assertEqual(len(scene["times"]), 1)
+        self.assertIn("the mechanism stands still: the simulation failed: step limit", scene["remarks"][0])
+        self.assertAlmostEqual(scene["motions"][0]["poses"][12], cos(0.4), delta=1e-6)
+
     def test_what_acts_on_joints_and_between_bodies_is_named_there(self):
         scene = {name: self.draw(name) for name in ("duffing/cart", "mechanisms/stick_slip", "mechanisms/slider_crank")}
         self.assertEqual(scene["duffing/cart"]["bodies"][1]["acting"], ["spring", "damper", "force law"])
