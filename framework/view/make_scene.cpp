@@ -51,15 +51,6 @@ Ellipsoid calcEllipsoid(const BodyValues<double>& body) {
   return ellipsoid;
 }
 
-std::size_t countMeshes(const SystemSpec& system) {
-  std::size_t count = 0;
-  for (const BodySpec& body : system.bodies) {
-    count += std::count_if(body.shapes.begin(), body.shapes.end(),
-                           [](const ShapeSpec& shape) { return shape.mesh.has_value(); });
-  }
-  return count;
-}
-
 void addBodies(const ModelSpec& model, const SystemValues<double>& values, Scene& scene) {
   scene.bodies.emplace_back();
   scene.bodies.back().name = "ground";
@@ -70,12 +61,11 @@ void addBodies(const ModelSpec& model, const SystemValues<double>& values, Scene
     scene.bodies.push_back({model.system.bodies[i - 1].name.text, body.parent, body.mass > 0.0,
                             calcEllipsoid(body), getEnumText(body.type), body.in_parent, axis});
   }
-  const std::size_t meshes = countMeshes(model.system);
   for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
     SceneBody& body = scene.bodies[i];
-    body.shapes = makeShapes(model.system.bodies[i - 1], body.ellipsoid,
-                             kMostTriangles / std::max<std::size_t>(meshes, 1), scene.remarks);
+    body.shapes = makeShapes(model.system.bodies[i - 1], body.ellipsoid, scene.remarks);
   }
+  limitTriangles(kMostTriangles, scene.bodies, scene.remarks);
 }
 
 void addLines(const SystemValues<double>& values, Scene& scene) {

@@ -119,7 +119,7 @@ Corners readMeshFile(const std::string& path) {
   }
   const std::string bytes = readBytes(path);
   if (bytes.size() > kLargestMesh) {
-    fail(path, "has more than 200 MB: reduce its triangles");
+    fail(path, "has more than 100 MB: reduce its triangles");
   }
   Corners corners = ending == "obj"      ? readObj(bytes, path)
                     : isBinaryStl(bytes) ? readBinaryStl(bytes)

@@ -13,6 +13,6 @@ using Corners = std::vector<std::array<double, 3>>;
 /// with the file and why it cannot be read, or is larger than kLargestMesh.
 Corners readMeshFile(const std::string& path);
 
-constexpr std::size_t kLargestMesh = 200'000'000;  ///< bytes; read at once, it takes three times its size
+constexpr std::size_t kLargestMesh = 100'000'000;  ///< bytes; drawing it takes 0.4 GB of memory
 
 }  // namespace twinmap::view

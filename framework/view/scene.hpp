@@ -33,6 +33,7 @@ struct SceneShape {
   Pose frame;        ///< in the body's
   Vector size;       ///< m; edges; of what is round [diameter, diameter, length]; of a mesh its grid's
   Mesh mesh{};
+  std::string file{};  ///< of a mesh
 };
 
 struct SceneBody {

@@ -50,21 +50,40 @@ Mesh cluster(const std::vector<Vector>& corners, const Vector& low, const Vector
   return mesh;
 }
 
-SceneShape readMesh(const ShapeSpec& spec, std::size_t most, std::vector<std::string>& remarks) {
+SceneShape readMesh(const ShapeSpec& spec) {
   std::vector<Vector> corners;
   for (const auto& corner : readMeshFile(spec.mesh->text)) {
     corners.push_back({corner[0] * spec.scale[0], corner[1] * spec.scale[1], corner[2] * spec.scale[2]});
   }
-  SceneShape shape{"mesh", {}, {}};
-  shape.mesh = makeMesh(corners, most, shape.frame.origin, shape.size);
-  if (shape.mesh.triangles.empty()) {
-    throw std::runtime_error(spec.mesh->text + ": its triangles have no area");
+  Vector low = corners.front(), high = low;
+  for (const Vector& corner : corners) {
+    low = {std::min(low.x, corner.x), std::min(low.y, corner.y), std::min(low.z, corner.z)};
+    high = {std::max(high.x, corner.x), std::max(high.y, corner.y), std::max(high.z, corner.z)};
   }
-  if (shape.mesh.triangles.size() < corners.size() / 3 && corners.size() / 3 > most) {
-    remarks.push_back(fmt::format("{}: is drawn with {} of its {} triangles", spec.mesh->text,
-                                  shape.mesh.triangles.size(), corners.size() / 3));
+  SceneShape shape{"mesh", {}, high - low};
+  shape.frame.origin = low;
+  shape.mesh = cluster(corners, low, shape.size, kSteps);
+  shape.file = spec.mesh->text;
+  if (shape.mesh.triangles.empty()) {
+    throw std::runtime_error(shape.file + ": its triangles have no area");
   }
   return shape;
+}
+
+/// Its nodes become fewer until at most `most` triangles are left, or a cube of two.
+void coarsen(Mesh& mesh, std::size_t most) {
+  constexpr double kFirst = 1000.0, kFewer = 0.8;
+  std::vector<Vector> corners;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      const auto& point = mesh.points[corner];
+      corners.push_back({point[0] / kSteps, point[1] / kSteps, point[2] / kSteps});
+    }
+  }
+  for (double nodes = kFirst; mesh.triangles.size() > most && nodes >= 2.0;
+       nodes = std::floor(kFewer * nodes)) {
+    mesh = cluster(corners, {}, {1.0, 1.0, 1.0}, nodes);
+  }
 }
 
 /// In the place of a mesh, in the body's frame.
@@ -82,9 +101,9 @@ Vector measureRound(const RoundShapeSpec& spec) {
   return {2.0 * spec.radius, 2.0 * spec.radius, spec.length};
 }
 
-SceneShape makeShape(const ShapeSpec& spec, std::size_t most, std::vector<std::string>& remarks) {
+SceneShape makeShape(const ShapeSpec& spec) {
   if (spec.mesh) {
-    return readMesh(spec, most, remarks);
+    return readMesh(spec);
   }
   if (spec.box) {
     return {"box", {}, toVector(*spec.box)};
@@ -115,28 +134,12 @@ void addCap(double radius, double z, std::vector<Vector>& points) {
 
 }  // namespace
 
-Mesh makeMesh(const std::vector<Vector>& corners, std::size_t most, Vector& low, Vector& size) {
-  Vector high = low = corners.front();
-  for (const Vector& corner : corners) {
-    low = {std::min(low.x, corner.x), std::min(low.y, corner.y), std::min(low.z, corner.z)};
-    high = {std::max(high.x, corner.x), std::max(high.y, corner.y), std::max(high.z, corner.z)};
-  }
-  size = high - low;
-  double nodes = kSteps;
-  Mesh mesh = cluster(corners, low, size, nodes);
-  while (mesh.triangles.size() > most && nodes > 2.0) {
-    nodes = std::floor(0.7 * (nodes > 1000.0 ? 1000.0 : nodes));
-    mesh = cluster(corners, low, size, nodes);
-  }
-  return mesh;
-}
-
-std::vector<SceneShape> makeShapes(const BodySpec& body, const Ellipsoid& ellipsoid, std::size_t most,
+std::vector<SceneShape> makeShapes(const BodySpec& body, const Ellipsoid& ellipsoid,
                                    std::vector<std::string>& remarks) {
   std::vector<SceneShape> shapes;
   for (const ShapeSpec& spec : body.shapes) {
     try {
-      shapes.push_back(makeShape(spec, most, remarks));
+      shapes.push_back(makeShape(spec));
       const Pose place{algebra::rotateXyz(toVector(spec.orientation)), toVector(spec.point)};
       shapes.back().frame = place * shapes.back().frame;
     } catch (const std::runtime_error& error) {
@@ -145,6 +148,25 @@ std::vector<SceneShape> makeShapes(const BodySpec& body, const Ellipsoid& ellips
     }
   }
   return shapes;
+}
+
+void limitTriangles(std::size_t most, std::vector<SceneBody>& bodies, std::vector<std::string>& remarks) {
+  std::size_t all = 0;
+  for (const SceneBody& body : bodies) {
+    for (const SceneShape& shape : body.shapes) {
+      all += shape.mesh.triangles.size();
+    }
+  }
+  for (SceneBody& body : bodies) {
+    for (SceneShape& shape : body.shapes) {
+      const std::size_t count = shape.mesh.triangles.size();
+      if (count > 0 && all > most) {
+        coarsen(shape.mesh, most * count / all);
+        remarks.push_back(fmt::format("{}: is drawn with {} of its {} triangles", shape.file,
+                                      shape.mesh.triangles.size(), count));
+      }
+    }
+  }
 }
 
 std::vector<Vector> listOutline(const SceneShape& shape) {
