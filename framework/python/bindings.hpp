@@ -12,5 +12,7 @@ void bindRuns(pybind11::module_& module);
 void bindMap(pybind11::module_& module);
 void bindJoint(pybind11::module_& module);
 void bindDiagnosis(pybind11::module_& module);
+void bindRobots(pybind11::module_& module);
+void bindView(pybind11::module_& module);
 
 }  // namespace twinmap::python

@@ -25,4 +25,6 @@ PYBIND11_MODULE(_twinmap, module) {
   twinmap::python::bindMap(module);
   twinmap::python::bindJoint(module);
   twinmap::python::bindDiagnosis(module);
+  twinmap::python::bindRobots(module);
+  twinmap::python::bindView(module);
 }

@@ -63,11 +63,12 @@ struct PackedResponses {
 /// Everything that is on the page.
 struct Page {
   std::string title;
-  std::vector<Section> sections;
-  std::map<std::string, DataTable> tables;                 ///< data of figures
-  std::vector<std::pair<std::string, std::string>> texts;  ///< name and text that a button copies
-  std::optional<std::vector<double>> samples;              ///< that can be highlighted, if any
-  std::optional<PackedResponses> responses;
+  std::string opening{};  ///< HTML below the title
+  std::vector<Section> sections{};
+  std::map<std::string, DataTable> tables{};                 ///< data of figures
+  std::vector<std::pair<std::string, std::string>> texts{};  ///< name and text that a button copies
+  std::optional<std::vector<double>> samples{};              ///< that can be highlighted, if any
+  std::optional<PackedResponses> responses{};
 };
 
 /// Adds a figure and its place in the section's HTML.

@@ -159,7 +159,7 @@ void addFigure(Figure figure, Section& section) {
 }
 
 std::string makePage(const Page& page) {
-  std::string body = makeElement("header", makeElement("h1", escapeHtml(page.title))) + "\n";
+  std::string body = makeElement("header", makeElement("h1", escapeHtml(page.title))) + "\n" + page.opening;
   const auto selects = std::find_if(page.sections.begin(), page.sections.end(), showsSamples);
   for (auto section = page.sections.begin(); section != page.sections.end(); ++section) {
     body += makeSectionHtml(*section, section == selects ? kSelectionBar : "") +

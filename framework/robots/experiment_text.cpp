@@ -8,38 +8,11 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/robots/chosen_parameters.hpp"
+#include "framework/robots/shape_text.hpp"
+#include "framework/robots/yaml_text.hpp"
 
 namespace twinmap::robots {
 namespace {
-
-/// With a point in front of an exponent: to YAML 1.1, 1e-06 is a text. -0 as 0.
-std::string writeNumber(double value) {
-  std::string text = toText(value + 0.0);
-  const std::size_t exponent = text.find('e');
-  return exponent == std::string::npos || text.find('.') != std::string::npos ? text
-                                                                              : text.insert(exponent, ".0");
-}
-
-std::string write(const Vector& v) {
-  return "[" + writeNumber(v.x) + ", " + writeNumber(v.y) + ", " + writeNumber(v.z) + "]";
-}
-
-bool isZero(const Vector& v) {
-  return v.x == 0.0 && v.y == 0.0 && v.z == 0.0;
-}
-
-/// ", in_parent: {point: ..., orientation: ...}", or "" at the origin.
-std::string writeFrame(const char* key, const Pose& frame) {
-  const Vector angles = calcAngles(frame.rotation);
-  std::string text;
-  if (!isZero(frame.origin)) {
-    text += "point: " + write(frame.origin);
-  }
-  if (!isZero(angles)) {
-    text += (text.empty() ? "" : ", ") + ("orientation: " + write(angles));
-  }
-  return text.empty() ? "" : fmt::format(", {}: {{{}}}", key, text);
-}
 
 /// Turns z to an axis: a planar joint of an experiment turns about its z.
 Matrix turnZ(const Vector& axis) {
@@ -75,6 +48,7 @@ class ExperimentWriter {
     addActuators();
     addClosures();
     noteFrames();
+    noteGround(robot_, assembly_);
     const std::string experiment =
         writeParameters() + "system:\n  gravity: " + writeGravity() + "\n  bodies:\n" + bodies +
         writeList("force_laws", forces_) + writeList("springs", springs_) + writeList("dampers", dampers_) +
@@ -147,7 +121,8 @@ class ExperimentWriter {
 
   std::string writeBody(const Body& body) {
     const std::string& name = names_.getBody(body.link->name);
-    return fmt::format("    {}:\n", name) + writeMass(body, name) + writeJoint(body);
+    return fmt::format("    {}:\n", name) + writeMass(body, name) + writeJoint(body) +
+           writeShapes(robot_, assembly_, *body.link);
   }
 
   std::string writeMass(const Body& body, const std::string& name) {
@@ -175,9 +150,8 @@ class ExperimentWriter {
     const Matrix& tensor = mass.tensor;
     return fmt::format(
         "      mass: {}\n      center_of_mass: {}\n      inertia: {{moments: {}, products: {}{}}}\n",
-        writeNumber(mass.mass), robots::write(mass.center),
-        robots::write({tensor.x.x, tensor.y.y, tensor.z.z}),
-        robots::write({tensor.y.x, tensor.z.x, tensor.z.y}), impossible.empty() ? "" : ", unchecked: true");
+        writeNumber(mass.mass), writeVector(mass.center), writeVector({tensor.x.x, tensor.y.y, tensor.z.z}),
+        writeVector({tensor.y.x, tensor.z.x, tensor.z.y}), impossible.empty() ? "" : ", unchecked: true");
   }
 
   std::string writeChosenMass(const std::string& name, const MassProperties& mass, const Spread& spread,
@@ -205,7 +179,7 @@ class ExperimentWriter {
     if (joint == nullptr) {
       text += body.is_free_base ? "free" : "weld";
     } else if (joint->isSingle()) {
-      text += (joint->isAngle() ? "pin" : "slider") + (", axis: " + robots::write(joint->axis));
+      text += (joint->isAngle() ? "pin" : "slider") + (", axis: " + writeVector(joint->axis));
     } else if (joint->kind != JointKind::kPlanar) {
       text += joint->kind == JointKind::kBall ? "ball" : "free";
     } else {
@@ -378,8 +352,7 @@ class ExperimentWriter {
         const Pose in_body = place.frame * frame;
         const std::string body = place.body != nullptr ? names_.getBody(place.body->name) : "ground";
         return "{body: " + body +
-               (closure.is_weld ? writeFrame("frame", in_body)
-                                : ", point: " + robots::write(in_body.origin)) +
+               (closure.is_weld ? writeFrame("frame", in_body) : ", point: " + writeVector(in_body.origin)) +
                "}";
       };
       gears_.push_back(fmt::format("{{{}: {{from: {}, to: {}}}}}", closure.is_weld ? "weld" : "coincident",

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/experiment/expression/algebra.hpp"
+#include "framework/experiment/model/shape_spec.hpp"
 
 namespace twinmap::robots {
 
@@ -23,10 +24,18 @@ struct Inertial {
   Matrix tensor;  ///< about the centre of mass, in `frame`
 };
 
+/// What is drawn of a link; without point and orientation, which `frame` is.
+struct Visual {
+  int line = 0;
+  Pose frame;  ///< in the link's
+  ShapeSpec shape;
+};
+
 struct Link {
   std::string name;
   int line = 0;
   std::optional<Inertial> inertial;
+  std::vector<Visual> visuals{};
 
   bool hasMass() const { return inertial && inertial->mass > 0.0; }
 };

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "framework/experiment/experiment_spec.hpp"
 #include "framework/experiment/expression/algebra.hpp"
 
 namespace twinmap::view {
@@ -19,6 +21,21 @@ struct Ellipsoid {
   Vector radii;
 };
 
+/// Triangles on a grid of 65536 steps along each of the frame's axes, from its origin.
+struct Mesh {
+  std::vector<std::array<std::uint16_t, 3>> points;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// What a body looks like.
+struct SceneShape {
+  std::string kind;  ///< box, cylinder, capsule, sphere, mesh
+  Pose frame;        ///< in the body's
+  Vector size;       ///< m; edges; of what is round [diameter, diameter, length]; of a mesh its grid's
+  Mesh mesh{};
+  std::string file{};  ///< of a mesh
+};
+
 struct SceneBody {
   std::string name;
   int parent = 0;  ///< place among the bodies; 0 is the ground
@@ -27,6 +44,8 @@ struct SceneBody {
   std::string joint;  ///< its type
   Pose in_parent;     ///< joint frame
   Vector axis;        ///< in it; zero for joints without one
+  std::vector<SceneShape> shapes{};
+  std::vector<std::string> acting{};  ///< kinds of elements on its joint's coordinates: spring, stop, gear
 };
 
 /// A line between points of two bodies: a spring, a damper, a rod.
@@ -43,15 +62,33 @@ struct SceneMark {
   Vector point, direction;
 };
 
+/// What was measured of an output.
+struct SceneMeasured {
+  std::vector<double> times, values;
+  /// At each time of the scene the rms of measured less updated about it; NaN where nothing was measured.
+  std::vector<double> residual;
+  std::string scale;  ///< of the residual: "sd" or "% of range"
+};
+
 struct SceneOutput {
   std::string name, unit;
+  int body = -1;  ///< that it belongs to; -1: none
+  std::optional<SceneMeasured> measured{};
 };
 
 /// One motion of the mechanism: at each time the poses of all bodies, ground first, and the outputs.
 struct SceneMotion {
   std::string name;
   std::vector<std::vector<Pose>> poses;
-  Eigen::MatrixXd outputs;  ///< outputs x times
+  Eigen::MatrixXd outputs;        ///< outputs x times; none of what is measured
+  Eigen::MatrixXd coordinates{};  ///< coordinates x times
+};
+
+/// A small vibration about an equilibrium, at equal steps of one period.
+struct SceneMode {
+  double frequency = 0.0;      ///< Hz, undamped
+  double damping_ratio = 0.0;  ///< below 1
+  std::vector<std::vector<Pose>> poses;
 };
 
 struct Scene {
@@ -63,15 +100,8 @@ struct Scene {
   std::vector<SceneOutput> outputs;
   Eigen::VectorXd times;  ///< s
   std::vector<SceneMotion> motions;
+  std::vector<SceneMode> modes;
+  std::vector<std::string> remarks;  ///< what is drawn otherwise than the experiment says, and why
 };
-
-/// The mechanism of an experiment at a point of its parameters (collectSampled), at rest in its initial
-/// state where it has no duration. `motion`: what the motion is called. Throws ExperimentError for a model
-/// that is wrong, std::runtime_error where the simulation fails.
-Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion);
-
-/// Adds a motion at another point.
-void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion,
-               Scene& scene);
 
 }  // namespace twinmap::view

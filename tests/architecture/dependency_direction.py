@@ -24,7 +24,7 @@ ALLOWED = {
     "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store"},
     "diagnosis": {"base", "experiment", "simulation", "models", "data", "estimation", "inference", "kernels"},
     "results": {"base", "experiment", "simulation", "data", "estimation", "analysis", "store"},
-    "report": {"base", "experiment", "simulation", "analysis", "store", "results"},
+    "report": {"base", "experiment", "simulation", "view", "analysis", "store", "results"},
     "study": {
         "base",
         "experiment",
@@ -71,7 +71,19 @@ ALLOWED = {
         "robots",
         "view",
     },
-    "python": {"base", "experiment", "simulation", "models", "models/fmu", "data", "study", "inference", "diagnosis"},
+    "python": {
+        "base",
+        "experiment",
+        "robots",
+        "simulation",
+        "models",
+        "models/fmu",
+        "view",
+        "data",
+        "study",
+        "inference",
+        "diagnosis",
+    },
 }
 
 # The folders of a room, those that others of it build on first; a room that is not here has no order within.

@@ -40,8 +40,8 @@ void addView(CLI::App& app) {
   CLI::App* command = app.add_subcommand("view", "Draw the mechanism, and let it move");
   command->footer(
       "Writes one page (HTML, three.js) that needs no network: bodies, joints with axes, springs, sensors, "
-      "moving as the nominal model does and, with a measurement, the updated one; outputs over time. Without "
-      "WebGL, and in print, it shows the picture.");
+      "moving as the nominal model does and, with a measurement, the updated one and what was measured, "
+      "residuals as colour; modes; outputs over time. Without WebGL, and in print, it shows the picture.");
   addArgument(*command, "FILE", arguments->experiment.file, "Experiment file, or folder of a finished run");
   addArgument(*command, "MEASUREMENT", arguments->measurement,
               "File that the updated model is inferred from, as infer takes it")

@@ -84,6 +84,7 @@ class FieldCheck {
 
  private:
   void check(const Bounds&) {}
+  void check(const std::vector<ShapeSpec>&) {}  // they have numbers alone
   void check(const Expression& expression, const Unit& unit) { check(expression, unit, on_angle_); }
   void check(const Expression& expression, const Unit& unit, bool on_angle);
   static std::string makeUnit(const Unit& unit, bool on_angle);

@@ -48,6 +48,8 @@ void resolveSignalFiles(YamlNode& root, const std::string& path) {
   visitNodes(root, std::begin(kFile), std::end(kFile), resolve);
   constexpr const char* kFmu[] = {"model", "fmu", "file"};
   visitNodes(root, std::begin(kFmu), std::end(kFmu), resolve);
+  constexpr const char* kMesh[] = {"system", "bodies", "*", "shapes", "*", "mesh"};
+  visitNodes(root, std::begin(kMesh), std::end(kMesh), resolve);
   constexpr const char* kProgram[] = {"model", "program"};
   visitNodes(root, std::begin(kProgram), std::end(kProgram), [&](YamlNode& program) {
     if (program.kind == YamlNode::Kind::kMap && program.find("working_folder") == nullptr) {

@@ -8,6 +8,7 @@
 #include "framework/experiment/fields/fields.hpp"
 #include "framework/experiment/model/elements/frame_spec.hpp"
 #include "framework/experiment/model/joint_type.hpp"
+#include "framework/experiment/model/shape_spec.hpp"
 
 namespace twinmap {
 
@@ -94,7 +95,8 @@ struct BodySpec {
   Expression3 center_of_mass;  ///< in the body frame, m
   InertiaSpec inertia;
   JointSpec joint;
-  std::optional<bool> massless{};  ///< carries others, and has no mass of its own
+  std::optional<bool> massless{};   ///< carries others, and has no mass of its own
+  std::vector<ShapeSpec> shapes{};  ///< to be drawn
 };
 
 template <class Fields>
@@ -105,6 +107,7 @@ void describe(Fields& f, BodySpec& s) {
   f.required("joint", s.joint, "how the body is connected to its parent");
   f.optional("massless", s.massless,
              "beside 'mass: 0': a frame between joints, which carries bodies with mass");
+  f.optional("shapes", s.shapes, "what it looks like: drawn, and used by nothing else");
 }
 
 }  // namespace twinmap

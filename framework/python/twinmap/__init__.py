@@ -20,6 +20,7 @@ from ._map import Estimate, Map, Posterior
 from ._recordings import Diagnosis, JointEstimate, infer_together
 from ._results import Results
 from ._twinmap import Progress, Quantity
+from ._view import View
 
 __version__ = _twinmap.__version__
 __all__ = [
@@ -35,6 +36,7 @@ __all__ = [
     "Quantity",
     "Responses",
     "Results",
+    "View",
     "infer_together",
     "sweep",
 ]

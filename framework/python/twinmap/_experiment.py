@@ -2,6 +2,7 @@
 import json
 import os
 import shlex
+import warnings
 from typing import Any, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
@@ -15,6 +16,7 @@ from ._progress import ProgressChoice, ProgressReport
 from ._recordings import Diagnosis, Recording, diagnose, read_recording
 from ._results import Results
 from ._twinmap import Quantity
+from ._view import View
 
 
 class Responses:
@@ -88,6 +90,32 @@ class Experiment:
     def from_yaml(text: str, source: str = "experiment.yaml", *, trial: Optional[str] = None) -> "Experiment":
         """The same from a text; `source` stands for the file, to which names of other files in it are relative."""
         return Experiment._make((source, text), Experiment._choose(trial))
+
+    @staticmethod
+    def from_urdf(
+        path: PathLike,
+        *,
+        base: str = "fixed",
+        parameters: Sequence[str] = (),
+        joints: Sequence[str] = (),
+        stops: bool = False,
+        strict: bool = False,
+    ) -> "Experiment":
+        """The experiment that `twinmap import` makes of a robot (docs/how-to/bring-a-robot.md).
+
+        base: "fixed", or "free" to let the first link fly. parameters: of "inertia", "friction", "armature", "damping".
+        joints: that move, all if none is named. stops: at the joints' limits. What of the file is not carried over is a
+        warning; strict: raises ExperimentError instead.
+        """
+        if base not in ("fixed", "free"):
+            raise ValueError(f"base: is 'fixed' or 'free', not {base!r}")
+        name = os.fspath(path)
+        text, left_out = _twinmap.import_urdf(name, base == "free", list(parameters), list(joints), stops)
+        if left_out and strict:
+            raise ExperimentError(f"{name}: is not carried over as a whole: " + "; ".join(left_out), file=name)
+        if left_out:
+            warnings.warn("not carried over:\n" + "\n".join(left_out), stacklevel=2)
+        return Experiment.from_yaml(text, os.path.basename(name) + ".yaml")
 
     @staticmethod
     def _choose(trial: Optional[str]) -> List[str]:
@@ -179,6 +207,18 @@ class Experiment:
     def extract(self, responses: Union[Responses, np.ndarray]) -> np.ndarray:
         """The features (n, d) of responses, which Map.predict() takes. NaN where a response has no such feature."""
         return self._experiment.extract(responses.rows if isinstance(responses, Responses) else responses)
+
+    def view(self, values: Union[Estimate, Points, None] = None) -> View:
+        """The mechanism, moving, as a notebook shows it: at the centre of the bounds ("nominal") and, beside that, at an
+        estimate or values, as simulate() takes them."""
+        points, names = make_points({}, self.sampled, "values"), ["nominal"]
+        if isinstance(values, Estimate):
+            values = dict(zip(values.names, values.mean))
+        if values is not None:
+            more = make_points(values, self.sampled, "values")
+            points = np.vstack([points, more])
+            names += ["updated"] if len(more) == 1 else [f"sample {i}" for i in range(len(more))]
+        return View(*_twinmap.view(self._experiment, points, names))
 
     def infer(
         self,

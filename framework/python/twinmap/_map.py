@@ -129,6 +129,14 @@ class Estimate:
             index=pd.Index(self.names, name="parameter"),
         )
 
+    def write_urdf(self, urdf: PathLike, out: PathLike, *, anyway: bool = False) -> None:
+        """Writes the robot's file with what was estimated, all other bytes as they are, and values, sds, status and
+        correlations beside it, as .json. anyway: also an estimate that is not ok, which raises ExperimentError else."""
+        text, summary = _twinmap.update_urdf(os.fspath(urdf), self._map.write_json(self._estimate), anyway)
+        for name, content in ((os.fspath(out), text), (os.path.splitext(os.fspath(out))[0] + ".json", summary)):
+            with open(name, "w", encoding="utf-8", newline="") as file:
+                file.write(content)
+
     def __getitem__(self, parameter: str) -> Tuple[float, float]:
         """Mean and standard deviation of one parameter or derived quantity."""
         if parameter in self.derived.index:

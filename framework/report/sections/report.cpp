@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "framework/base/files/atomic_file.hpp"
+#include "framework/report/mechanism.hpp"
 #include "framework/report/sections/samples_table.hpp"
 #include "framework/report/sections/sections.hpp"
 #include "framework/results/run_folder.hpp"
@@ -46,6 +47,7 @@ Report makeRunReport(const fs::path& folder) {
   const std::vector<GateResult> gates = checkGates(run.experiment.gates, run.metrics);
   Page page;
   page.title = run.experiment.name.text;
+  addMechanism(run.experiment, "twinmap view RUN", page);
   addVerdict(run, gates, page);
   addResponses(run, page);
   addSampleChapters(run, page);

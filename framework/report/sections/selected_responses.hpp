@@ -9,7 +9,4 @@ namespace twinmap {
 /// the page's script: 16-bit fractions of each output's range in base64, at most 200 times each.
 void addSelectedResponses(const RunFolder& run, Section& section, Page& page);
 
-/// RFC 4648.
-std::string encodeBase64(const std::vector<unsigned char>& bytes);
-
 }  // namespace twinmap

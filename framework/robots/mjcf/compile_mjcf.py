@@ -34,6 +34,33 @@ def describe_joint(model, j):
     return joint
 
 
+def describe_shape(model, g):
+    """What MuJoCo shows of a geom; None of planes, fields and ellipsoids. MuJoCo moves meshes to their inertia's frame."""
+    kind = mujoco.mjtGeom(model.geom_type[g]).name[7:].lower()
+    size, position, quaternion = model.geom_size[g], model.geom_pos[g].copy(), model.geom_quat[g].copy()
+    shape = {"kind": kind}
+    if kind == "mesh":
+        m, back, turn = model.geom_dataid[g], np.zeros(3), np.zeros(4)
+        mujoco.mju_negPose(back, turn, model.mesh_pos[m], model.mesh_quat[m])
+        mujoco.mju_mulPose(position, quaternion, model.geom_pos[g], model.geom_quat[g], back, turn)
+        shape["file"] = (
+            model.paths[model.mesh_pathadr[m] :].split(b"\0")[0].decode() if model.mesh_pathadr[m] >= 0 else ""
+        )
+        shape["numbers"] = model.mesh_scale[m].tolist()
+    elif kind in ("box", "cylinder", "capsule", "sphere"):
+        shape["numbers"] = (2 * size).tolist() if kind == "box" else [float(size[0]), float(2 * size[1])]
+    else:
+        return None
+    shape["frame"] = make_pose(position, quaternion)
+    return shape
+
+
+def describe_shapes(model, b):
+    first, shown = model.body_geomadr[b], 3  # groups that MuJoCo's own viewer shows at first
+    geoms = [g for g in range(first, first + model.body_geomnum[b]) if model.geom_group[g] < shown]
+    return [shape for shape in (describe_shape(model, g) for g in geoms) if shape]
+
+
 def describe_body(model, b):
     first, count = model.body_jntadr[b], model.body_jntnum[b]
     return {
@@ -45,6 +72,7 @@ def describe_body(model, b):
         "moments": model.body_inertia[b].tolist(),
         "floats": float(model.body_gravcomp[b]),
         "joints": [describe_joint(model, j) for j in range(first, first + count)],
+        "shapes": describe_shapes(model, b),
     }
 
 

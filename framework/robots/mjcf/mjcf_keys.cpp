@@ -8,8 +8,7 @@ namespace twinmap::robots {
 namespace {
 
 constexpr std::pair<const char*, const char*> kLeftOut[] = {
-    {"geom",
-     "contact with other bodies, and a drawing (its mass counts): describe what touches in 'contacts'"},
+    {"geom", "contact with other bodies (its shape and mass count): describe what touches in 'contacts'"},
     {"site", "a place for sensors and tendons: describe them in 'outputs'"},
     {"camera", "a view; it moves nothing"},
     {"light", "a view; it moves nothing"},

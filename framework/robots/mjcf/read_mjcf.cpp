@@ -125,8 +125,28 @@ class MjcfReader {
       robot_.joints.push_back(weld);
       robot_.links.push_back({name, line, readInertial(body, line)});
     }
+    readShapes(body, line, robot_.links.back());
     if (body.at("floats").get<double>() != 0.0) {
       robot_.leaveOut(line, "gravcomp", "a force against gravity: describe it in 'applied_forces'");
+    }
+  }
+
+  static void readShapes(const Json& body, int line, Link& link) {
+    for (const Json& json : body.value("shapes", Json::array())) {
+      const std::string kind = json.at("kind");
+      const Json& numbers = json.at("numbers");
+      ShapeSpec shape;
+      if (kind == "mesh") {
+        shape.mesh = Name{json.at("file"), {}};
+        shape.scale = numbers.get<std::array<double, 3>>();
+      } else if (kind == "box") {
+        shape.box = numbers.get<std::array<double, 3>>();
+      } else if (kind == "sphere") {
+        shape.sphere = numbers.at(0).get<double>();
+      } else {
+        (kind == "cylinder" ? shape.cylinder : shape.capsule) = RoundShapeSpec{numbers.at(0), numbers.at(1)};
+      }
+      link.visuals.push_back({line, toPose(json.at("frame")), shape});
     }
   }
 

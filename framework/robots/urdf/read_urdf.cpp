@@ -4,6 +4,7 @@
 #include <iterator>
 #include <set>
 
+#include "framework/robots/shape_text.hpp"
 #include "framework/robots/urdf/urdf_keys.hpp"
 
 namespace twinmap::robots {
@@ -29,6 +30,7 @@ class UrdfReader {
     robot_.file = file_.getPath();
     robot_.name = root.attribute("name").value();
     listLeftOut(root, "robot");
+    listPackages(root);
     std::set<std::string> names;
     for (const pugi::xml_node& link : root.children("link")) {
       robot_.links.push_back(readLink(link));
@@ -79,8 +81,6 @@ class UrdfReader {
       if (child.type() == pugi::node_element &&
           !leaveOut(child, child_path, "<" + std::string(child.name()) + ">")) {
         listLeftOut(child, child_path);
-      } else {
-        listPackages(child);
       }
     }
   }
@@ -115,12 +115,50 @@ class UrdfReader {
             file_.getVector(origin, "xyz", {})};
   }
 
-  Link readLink(const pugi::xml_node& node) const {
+  Link readLink(const pugi::xml_node& node) {
     Link link{file_.getText(node, "name"), file_.getLine(node), std::nullopt};
+    for (const pugi::xml_node& visual : node.children("visual")) {
+      if (const std::optional<ShapeSpec> shape = readShape(visual.child("geometry"))) {
+        link.visuals.push_back({file_.getLine(visual), readPose(visual), *shape});
+      } else {
+        robot_.leaveOut(file_.getLine(visual), "<visual> without a shape", "a drawing; it moves nothing");
+      }
+    }
     if (const pugi::xml_node inertial = node.child("inertial")) {
       link.inertial = readInertial(inertial);
     }
     return link;
+  }
+
+  /// None where there is no shape that has a size.
+  std::optional<ShapeSpec> readShape(const pugi::xml_node& geometry) const {
+    ShapeSpec shape;
+    const double none = 0.0;
+    const auto read = [&](const char* kind, const char* size) {
+      return file_.getNumber(geometry.child(kind), size, &none);
+    };
+    const auto read_round = [&](const char* kind) -> std::optional<RoundShapeSpec> {
+      const RoundShapeSpec round{read(kind, "radius"), read(kind, "length")};
+      return round.radius > 0.0 && round.length > 0.0 ? std::optional(round) : std::nullopt;
+    };
+    shape.cylinder = read_round("cylinder");
+    shape.capsule = read_round("capsule");
+    if (const double radius = read("sphere", "radius"); radius > 0.0) {
+      shape.sphere = radius;
+    }
+    const Vector edges = file_.getVector(geometry.child("box"), "size", {});
+    if (edges.x > 0.0 && edges.y > 0.0 && edges.z > 0.0) {
+      shape.box = {edges.x, edges.y, edges.z};
+    }
+    const pugi::xml_node mesh = geometry.child("mesh");
+    if (const std::string file = mesh.attribute("filename").value(); !file.empty()) {
+      const Vector scale = file_.getVector(mesh, "scale", {1.0, 1.0, 1.0});
+      shape.mesh = Name{locateMesh(file_.getPath(), file), {}};
+      shape.scale = {scale.x, scale.y, scale.z};
+    }
+    const int given = (shape.box ? 1 : 0) + (shape.cylinder ? 1 : 0) + (shape.capsule ? 1 : 0) +
+                      (shape.sphere ? 1 : 0) + (shape.mesh ? 1 : 0);
+    return given == 1 ? std::optional(shape) : std::nullopt;
   }
 
   Inertial readInertial(const pugi::xml_node& node) const {

@@ -35,13 +35,15 @@ Table readWindow(const InferenceSource& source, const MeasuredWindow& window) {
 
 /// What was measured in a window, and the model with the excitation of the window.
 struct Window {
-  Window(ExperimentSpec experiment, const ResponseLayout& rows, VectorXd measured)
-      : layout(rows),
+  Window(ExperimentSpec followed, const ResponseLayout& rows, VectorXd measured)
+      : experiment(std::move(followed)),
+        layout(rows),
         response(std::move(measured)),
         noise_stddev(calcNoiseStddev(experiment.noise, layout)),
         refiner(experiment, layout),
         features(refiner.getExtractor().extract(response)) {}
 
+  const ExperimentSpec experiment;
   const ResponseLayout layout;
   const VectorXd response;  ///< NaN where missing
   VectorXd noise_stddev;
@@ -251,6 +253,7 @@ Replay draw(const InferenceSource& source, Window& window, InferredMeasurement i
             const ReplayOptions& options) {
   Replay replay;
   replay.options = options;
+  replay.experiment = window.experiment;
   replay.inferred = std::move(inferred);
   replay.layout = window.layout;
   replay.measured = window.response;
@@ -286,14 +289,14 @@ std::vector<OutputFit> calcFits(const VectorXd& measured, const VectorXd& respon
         there.push_back(row);
       }
     }
-    const VectorXd residual = measured(there) - response(there);
-    const VectorXd motion = measured(there).array() - measured(there).mean();
-    const VectorXd in_sd = residual.cwiseQuotient(noise_stddev(there));
-    const double root = std::sqrt(static_cast<double>(there.size()));
     if (there.empty()) {
       fits.emplace_back();
       continue;
     }
+    const VectorXd residual = measured(there) - response(there);
+    const VectorXd motion = measured(there).array() - measured(there).mean();
+    const VectorXd in_sd = residual.cwiseQuotient(noise_stddev(there));
+    const double root = std::sqrt(static_cast<double>(there.size()));
     fits.push_back(
         {100.0 * residual.norm() / motion.norm(), in_sd.norm() / root, in_sd.cwiseAbs().maxCoeff()});
   }

@@ -45,6 +45,7 @@ struct ReplayedModel {
 /// Models next to a measurement.
 struct Replay {
   ReplayOptions options;
+  ExperimentSpec experiment;     ///< with the excitation of the measurement
   InferredMeasurement inferred;  ///< from options.from
   ResponseLayout layout;
   Eigen::VectorXd measured, noise_stddev;  ///< rows of the layout; measured: NaN where missing

@@ -16,6 +16,7 @@
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/report/estimate_panel.hpp"
 #include "framework/report/html.hpp"
+#include "framework/report/mechanism.hpp"
 #include "framework/report/response_panels.hpp"
 #include "framework/report/sections/verdict.hpp"
 #include "framework/study/replay/replay_files.hpp"
@@ -322,6 +323,7 @@ void addReplay(const MeasurementReader& reader, const Replay& replay, const std:
 std::string makeReplayPage(const MeasurementReader& reader, const Replay& replay) {
   Page page;
   page.title = "Replay of " + replay.options.measurement.file.filename().string();
+  addMechanism(reader.getExperiment(), "twinmap view " + listArguments(replay.inferred.asked), page);
   addReplay(reader, replay, "", page);
   return makePage(page);
 }

@@ -67,6 +67,14 @@ std::vector<ConstantSpec> withoutTexts(std::vector<ConstantSpec> constants) {
   return withoutUnits(std::move(constants));
 }
 
+/// What bodies look like decides nothing.
+SystemSpec withoutShapes(SystemSpec system) {
+  for (BodySpec& body : system.bodies) {
+    body.shapes.clear();
+  }
+  return system;
+}
+
 /// A table's values and the delay of its clock count, not where they come from.
 std::vector<SignalSpec> withoutSources(std::vector<SignalSpec> signals) {
   for (SignalSpec& signal : signals) {
@@ -153,7 +161,7 @@ std::string writeTrajectoryContent(const ModelSpec& model, const ResponseLayout&
   if (source) {
     content.required("model", describeSource(*source, sampled), "");
   } else {
-    content.required("system", system, "");
+    content.required("system", withoutShapes(system), "");
   }
   content.requiredMap("excitation", withoutSources(excitation), "");
   content.required("initial", initial, "");

@@ -11,9 +11,10 @@ function make(name, attributes, parent, text) {
 }
 
 function makePlot(parent, scene, index) {
-  const { name, unit } = scene.outputs[index];
+  const { name, unit, measured } = scene.outputs[index];
   const rows = scene.motions.map((motion) => motion.outputs[index]).filter((row) => row && row.every(Number.isFinite));
-  const low = Math.min(...rows.flat()), high = Math.max(...rows.flat()), end = scene.times[scene.times.length - 1] || 1;
+  const all = [...rows.flat(), ...(measured ? measured.values : [])];
+  const low = Math.min(...all), high = Math.max(...all), end = scene.times[scene.times.length - 1] || 1;
   const x = (time) => LEFT + (time / end) * (WIDTH - LEFT - RIGHT);
   const y = (value) => HEIGHT - BOTTOM - (high > low ? (value - low) / (high - low) : 0.5) * (HEIGHT - BOTTOM - TOP);
   const figure = document.createElement("figure");
@@ -26,6 +27,10 @@ function makePlot(parent, scene, index) {
   }
   make("text", { x: WIDTH - RIGHT, y: HEIGHT - 6, "text-anchor": "end" }, svg, `${end} s`);
   make("path", { class: "frame", d: `M${LEFT},${TOP}V${HEIGHT - BOTTOM}H${WIDTH - RIGHT}` }, svg);
+  if (measured) {
+    const dots = measured.values.map((value, k) => `M${x(measured.times[k]).toFixed(1)},${y(value).toFixed(1)}h0`);
+    make("path", { class: "dots", d: dots.join("") }, svg);
+  }
   rows.forEach((row, i) => {
     const points = row.map((value, k) => `${x(scene.times[k]).toFixed(1)},${y(value).toFixed(1)}`);
     make("polyline", { class: `curve motion${i}`, points: points.join(" ") }, svg);
@@ -55,6 +60,7 @@ export function makePlots(parent, scene) {
       entry.textContent = motion.name;
       legend.append(entry, " ");
     });
+    if (scene.outputs.some((output) => output.measured)) legend.append("dots: measured");
     parent.append(legend);
   }
   const cursors = scene.times.length > 1 ? scene.outputs.map((output, i) => makePlot(parent, scene, i)) : [];

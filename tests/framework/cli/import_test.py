@@ -121,12 +121,31 @@ class Import(unittest.TestCase):
 
     def test_what_is_left_out_is_named_with_its_lines_and_is_an_error_where_that_is_asked_for(self):
         _, result = import_robot(ROBOTS / "arm.urdf")
-        for what in ("<visual>", "<collision>", "<transmission>", "<material>", "limit effort", "<link> without mass"):
+        for what in ("<collision>", "<transmission>", "<material>", "limit effort", "<link> without mass"):
             line = next(line for line in result.stderr.splitlines() if f": {what}: " in line)
             self.assertIn("#   " + line.removeprefix(f"not carried over: {ROBOTS / 'arm.urdf'}:"), result.stdout)
-        self.assertIn(f"arm.urdf:{self.find_line(ARM, '<visual>')}: <visual>", result.stderr)
+        self.assertIn(f"arm.urdf:{self.find_line(ARM, '<collision>')}: <collision>", result.stderr)
         strict = call("import", ROBOTS / "arm.urdf", "--strict")
         self.assertEqual((strict.returncode, strict.stdout), (2, ""))
+
+    def test_what_is_visual_becomes_shapes_of_the_body_that_it_moves_with(self):
+        file = self.folder / "robot.urdf"
+        more = (
+            '<visual><origin xyz="0 0 1" rpy="0 0 1.5"/><geometry><mesh filename="parts/a b.stl" scale="1 1 2"/>'
+            '</geometry></visual><visual><geometry><sphere radius="0"/></geometry></visual><visual><geometry>'
+            '<cylinder radius="0.1" length="0.3"/></geometry></visual><visual>'
+        )
+        file.write_text(ARM.replace("<visual>", more, 1))
+        experiment, result = import_robot(file)
+        shapes = next(body["shapes"] for body in experiment["system"]["bodies"].values() if "shapes" in body)
+        self.assertEqual(
+            [set(shape) - {"point", "orientation", "scale"} for shape in shapes], [{"mesh"}, {"cylinder"}, {"box"}]
+        )
+        self.assertEqual(shapes[0]["mesh"], str(self.folder / "parts/a b.stl"))
+        self.assertEqual((shapes[0]["scale"], shapes[0]["point"]), ([1, 1, 2], [0, 0, 1]))
+        self.assertAlmostEqual(shapes[0]["orientation"][2], 1.5, delta=1e-12)
+        self.assertEqual(shapes[1]["cylinder"], {"radius": 0.1, "length": 0.3})
+        self.assertIn(": <visual> without a shape: ", result.stderr)
 
     def test_what_is_not_of_urdf_is_named(self):
         file = self.folder / "robot.urdf"
@@ -299,6 +318,14 @@ class Mjcf(unittest.TestCase):
             self.assertIn(f"finger.xml:{what}", result.stderr)
         parameters = yaml.safe_load(result.stdout)["parameters"]
         self.assertEqual(parameters["bend_armature"]["prior"]["normal"], {"mean": 0.01, "stddev": 0.002})
+
+    def test_geoms_become_shapes(self):
+        bodies = yaml.safe_load(self.import_with(MJCF_GOLDEN["compiled"]).stdout)["system"]["bodies"]
+        self.assertEqual(bodies["ball"]["shapes"], [{"box": [0.1, 0.12, 0.14]}])  # half of that in MJCF
+        self.assertEqual(bodies["tip"]["shapes"], [{"sphere": 0.03}])
+        (capsule,) = bodies["link"]["shapes"]  # from 0 0 0 to 0.2 0 0.02
+        self.assertAlmostEqual(capsule["capsule"]["length"], (0.2**2 + 0.02**2) ** 0.5, delta=1e-12)
+        self.assertEqual(capsule["point"], [0.1, 0, 0.01])
 
     def test_messages_name_what_is_missing(self):
         for answer, message in (

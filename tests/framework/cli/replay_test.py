@@ -178,6 +178,8 @@ class Replay(ReplayCase):
             for name in ("measured", "nominal", "updated", "lower", "upper"):
                 np.testing.assert_allclose(table[name], columns[name], rtol=1e-6)
         self.assertIn(f"{self.measurement}: ok (chi-square ", page)
+        self.assertLess(page.index('<figure id="mechanism"><svg'), page.index("<section"))
+        self.assertIn(f"twinmap view {self.run_folder} {self.measurement}", page)
         for name in TRUE:
             self.assertIn(f">{name}</td>", page)
         markup = re.sub(r"<script.*?</script>", "", page, flags=re.DOTALL)

@@ -1,14 +1,32 @@
 """twinmap view: the page and the picture of a mechanism."""
+import base64
 import json
 import re
+import struct
 import tempfile
 import unittest
 import xml.etree.ElementTree as ET
-from math import cos, sin
+from math import atan2, cos, pi, sin
 from pathlib import Path
 
 from support import EXPERIMENTS, call
 
+CHAIN = """
+name: chain
+parameters: {k: {bounds: [99, 101], unit: N/m}}
+system:
+  bodies:
+    one: {mass: 1, joint: {type: slider, coordinates: [x]}}
+    two: {mass: 1, joint: {type: slider, coordinates: [y], in_parent: {point: [1, 0, 0]}}}
+  force_laws:
+    - {coordinate: x, force: k*(y - 2*x)}
+    - {coordinate: y, force: k*(x - 2*y)}
+initial: {coordinates: {x: 0.1}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: 1}
+features: [{samples: {outputs: [x], start: 0, interval: 0.01, count: 101}}]
+noise: {stddev: {x: 1e-3}}
+"""
 SVG = "{http://www.w3.org/2000/svg}"
 PENDULUM = """
 name: pen<du>lum
@@ -33,9 +51,22 @@ noise: {stddev: {q: 1e-3, x: 1e-3}}
 """
 
 
+def read_poses(text):
+    """Of each pose the columns of the rotation, then the origin."""
+    numbers = []
+    for x, y, z, w, *origin in struct.iter_unpack("<7f", base64.b64decode(text)):
+        numbers += [1 - 2 * (y * y + z * z), 2 * (x * y + z * w), 2 * (x * z - y * w)]
+        numbers += [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)]
+        numbers += [2 * (x * z + y * w), 2 * (y * z - x * w), 1 - 2 * (x * x + y * y), *origin]
+    return numbers
+
+
 def read_scene(page):
     text = re.search(r'<script type="application/json" id="scene">(.*?)</script>', page, re.DOTALL).group(1)
-    return json.loads(text.replace("<\\/", "</"))
+    scene = json.loads(text.replace("<\\/", "</"))
+    for motion in scene["motions"] + scene["modes"]:
+        motion["poses"] = read_poses(motion["poses"])
+    return scene
 
 
 class View(unittest.TestCase):
@@ -92,6 +123,28 @@ class View(unittest.TestCase):
             self.assertEqual(classes.count(kind), count, kind)
         self.assertEqual([text.text for text in root.iter(f"{SVG}text")], ["arm", "bob"])
 
+    def test_what_cannot_be_simulated_stands_still_and_says_why(self):
+        text = PENDULUM.replace("pen<du>lum", "pendulum").replace("simulation: {", "simulation: {max_steps: 3, ")
+        self.file.write_text(text)
+        self.assertEqual(call("simulate", self.file).returncode, 1)
+        scene = read_scene(self.view()[0])
+        self.assertEqual(len(scene["times"]), 1)
+        self.assertIn("the mechanism stands still: the simulation failed: step limit", scene["remarks"][0])
+        self.assertAlmostEqual(scene["motions"][0]["poses"][12], cos(0.4), delta=1e-6)
+
+    def test_what_acts_on_joints_and_between_bodies_is_named_there(self):
+        scene = {name: self.draw(name) for name in ("duffing/cart", "mechanisms/stick_slip", "mechanisms/slider_crank")}
+        self.assertEqual(scene["duffing/cart"]["bodies"][1]["acting"], ["spring", "damper", "force law"])
+        self.assertIn("friction", scene["mechanisms/stick_slip"]["bodies"][1]["acting"])
+        self.assertEqual([mark["kind"] for mark in scene["mechanisms/slider_crank"]["marks"]], ["constraint"])
+        picture = (self.folder / "picture.svg").read_text()
+        self.assertIn('class="constraint"', picture)
+
+    def draw(self, name):
+        files = ("--out", self.folder / "page.html", "--svg", self.folder / "picture.svg")
+        self.assertEqual(call("view", EXPERIMENTS / f"{name}.yaml", *files).returncode, 0, name)
+        return read_scene((self.folder / "page.html").read_text())
+
     def test_texts_of_the_experiment_stay_texts(self):
         self.file.write_text(PENDULUM.replace("name: pen<du>lum", 'name: "</script><b>"').replace("arm", "arm_b"))
         result = call("view", self.file, "--out", self.folder / "page.html")
@@ -105,8 +158,141 @@ class View(unittest.TestCase):
         result = call("view", self.file, measured, "--out", self.folder / "page.html")
         self.assertEqual(result.returncode, 0, result.stderr)
         motions = read_scene((self.folder / "page.html").read_text())["motions"]
-        self.assertEqual([motion["name"] for motion in motions], ["nominal", "updated (ok)"])
+        self.assertEqual([motion["name"] for motion in motions], ["nominal", "updated (ok)", "measured"])
         self.assertNotEqual(motions[0]["poses"], motions[1]["poses"])
+
+    def test_the_measured_motion_is_what_the_sensors_read_and_the_residual_is_noise(self):
+        measured = self.folder / "m.csv"
+        call("simulate", self.file, "parameters.g=9.2", "--noise", "--csv", measured)
+        self.assertEqual(call("view", self.file, measured, "--out", self.folder / "page.html").returncode, 0)
+        scene = read_scene((self.folder / "page.html").read_text())
+        rows = [list(map(float, row.split(","))) for row in measured.read_text().splitlines()[1:]]
+        poses = scene["motions"][2]["poses"]
+        for k, (t, q, x) in enumerate(rows):
+            self.assertAlmostEqual(scene["times"][k], t, delta=1e-9)
+            drawn = atan2(poses[36 * k + 18], poses[36 * k + 12])  # of the arm about y
+            self.assertLess(abs(drawn - q), 6e-3)  # q and x, of 1e-3 each, are two sensors of one angle
+        for output, column in zip(scene["outputs"], zip(*rows)):
+            self.assertEqual(output["measured"]["scale"], "sd")
+            squares = [r**2 for r in output["measured"]["residual"]]
+            self.assertAlmostEqual(sum(squares) / len(squares), 1, delta=0.4)  # 4 sds of chi2(201) / 201
+        self.assertEqual([output["body"] for output in scene["outputs"]], [1, 2])
+
+    def test_coordinates_without_a_sensor_follow_the_updated_model(self):
+        self.file.write_text(PENDULUM.replace("[q, x]", "[x]").replace("pen<du>lum", "pendulum"))
+        measured = self.folder / "m.csv"
+        call("simulate", self.file, "--csv", measured)
+        result = call("view", self.file, measured, "--out", self.folder / "page.html")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        motions = read_scene((self.folder / "page.html").read_text())["motions"]
+        for one, other in zip(motions[1]["poses"], motions[2]["poses"]):
+            self.assertAlmostEqual(one, other, delta=1e-4)
+
+    def test_modes_are_those_of_two_equal_masses_between_three_equal_springs(self):
+        self.file.write_text(CHAIN)
+        scene = read_scene(self.view()[0])
+        self.assertEqual(len(scene["modes"]), 2)
+        for mode, square, sign in zip(scene["modes"], (100, 300), (1, -1)):
+            self.assertAlmostEqual(mode["frequency"], square**0.5 / (2 * pi), delta=1e-6)
+            self.assertAlmostEqual(mode["damping"], 0, delta=1e-9)
+            for frame in range(25):
+                one, other = (mode["poses"][36 * frame + 12 * body + 9] for body in (1, 2))
+                self.assertAlmostEqual(other - 1, sign * one, delta=1e-6)  # y is 0 at 1 m
+            self.assertGreater(mode["poses"][12 + 9] ** 2 + mode["poses"][36 * 6 + 12 + 9] ** 2, 0)
+
+    def add_shapes(self, shapes):
+        text = PENDULUM.replace("pen<du>lum", "pendulum").replace(
+            "      mass: 2", f"      shapes: {shapes}\n      mass: 2"
+        )
+        self.file.write_text(text)
+
+    def test_shapes_are_drawn_where_they_are_said_to_be_and_change_no_response(self):
+        plain = call("simulate", self.file).stdout
+        self.add_shapes(
+            "[{box: [0.1, 0.2, 1], point: [0, 0, -0.5]}, {cylinder: {radius: 0.1, length: 0.3}, "
+            "orientation: [1.5707963267948966, 0, 0]}, {sphere: 0.2}, {capsule: {radius: 0.1, length: 1}}]"
+        )
+        self.assertEqual(call("simulate", self.file).stdout, plain)
+        page, picture = self.view()
+        shapes = read_scene(page)["bodies"][1]["shapes"]
+        self.assertEqual([shape["kind"] for shape in shapes], ["box", "cylinder", "sphere", "capsule"])
+        self.assertEqual(shapes[0]["size"] + shapes[0]["frame"][9:], [0.1, 0.2, 1, 0, 0, -0.5])
+        self.assertEqual(shapes[1]["size"], [0.2, 0.2, 0.3])
+        for number, expected in zip(shapes[1]["frame"], [1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 0, 0]):
+            self.assertAlmostEqual(number, expected, delta=1e-12)
+        classes = [element.tag for element in ET.fromstring(picture).iter() if element.get("class") == "body"]
+        self.assertEqual(classes, [f"{SVG}polygon"] * 4 + [f"{SVG}ellipse"])
+
+    def test_meshes_of_three_formats_are_one_and_a_missing_one_is_a_box(self):
+        corners = [(0, 0, 0), (10, 0, 0), (0, 20, 0), (0, 0, 30)]
+        faces = [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)]
+        binary = bytes(80) + struct.pack("<I", len(faces))
+        text = "solid tetrahedron\n"
+        for face in faces:
+            binary += struct.pack("<12fH", 0, 0, 0, *(x for i in face for x in corners[i]), 0)
+            text += "facet normal 0 0 0\nouter loop\n"
+            text += "".join("vertex %g %g %g\n" % corners[i] for i in face) + "endloop\nendfacet\n"
+        (self.folder / "binary.stl").write_bytes(binary)
+        (self.folder / "text.STL").write_text(text)
+        lines = ["v %g %g %g" % corner for corner in corners] + [
+            "f %d/1 %d//2 %d" % tuple(i + 1 for i in face) for face in faces
+        ]
+        (self.folder / "lines.obj").write_text("\n".join(lines))
+        self.add_shapes(
+            "["
+            + ", ".join(
+                f"{{mesh: {name}, scale: [0.001, 0.001, 0.001]}}"
+                for name in ("binary.stl", "text.STL", "lines.obj", "none.stl")
+            )
+            + "]"
+        )
+        result = call("view", self.file, "--out", self.folder / "page.html")
+        self.assertIn("none.stl", result.stderr)
+        self.assertIn("a box is drawn in its place", result.stderr)
+        one, two, three, box = read_scene((self.folder / "page.html").read_text())["bodies"][1]["shapes"]
+        self.assertEqual(one["size"], [0.01, 0.02, 0.03])
+        self.assertEqual(len(base64.b64decode(one["triangles"])), 48)
+        points = {tuple(point) for point in struct.iter_unpack("<3H", base64.b64decode(one["points"]))}
+        self.assertEqual(points, {(0, 0, 0), (65535, 0, 0), (0, 65535, 0), (0, 0, 65535)})
+        self.assertEqual(one, two)
+        self.assertEqual(one, three)
+        self.assertEqual(box["kind"], "box")
+
+    def test_a_fine_mesh_is_coarsened_and_says_so(self):
+        steps = 400  # 320 000 triangles of a wavy plane
+        lines = ["v %g %g %g" % (i, j, sin(i) + cos(j)) for i in range(steps) for j in range(steps)]
+        for i in range(steps - 1):
+            for j in range(steps - 1):
+                at = i * steps + j + 1
+                lines.append(f"f {at} {at + 1} {at + steps + 1} {at + steps}")
+        (self.folder / "fine.obj").write_text("\n".join(lines))
+        self.add_shapes("[{mesh: fine.obj}]")
+        result = call("view", self.file, "--out", self.folder / "page.html")
+        self.assertRegex(result.stderr, r"fine.obj: is drawn with \d+ of its 318402 triangles")
+        page = (self.folder / "page.html").read_text()
+        self.assertLess(len(page), 20e6)
+        mesh = read_scene(page)["bodies"][1]["shapes"][0]
+        self.assertLess(len(base64.b64decode(mesh["triangles"])) / 12, 200001)
+        self.assertEqual(mesh["size"][:2], [399, 399])
+
+    def test_shapes_that_are_none_are_refused_with_their_place(self):
+        for shapes, what in (
+            ("[{box: [1, 0, 1]}]", "edges above 0"),
+            ("[{sphere: -1}]", "above 0"),
+            ("[{sphere: 1, box: [1, 1, 1]}]", "exactly one of"),
+            ("[{sphere: 1, scale: [2, 2, 2]}]", "scale"),
+            ("[{cone: 1}]", "cone"),
+            ("[{cylinder: {radius: 1}}]", "length"),
+        ):
+            self.add_shapes(shapes)
+            result = call("check", self.file)
+            self.assertEqual(result.returncode, 2, shapes)
+            self.assertRegex(result.stderr, rf"pendulum.yaml:\d+:\d+: .*{what}", shapes)
+
+    def test_a_model_from_elsewhere_has_a_picture_of_its_outputs(self):
+        call("view", EXPERIMENTS / "python_plant/python_plant.yaml", "--svg", self.folder / "picture.svg")
+        root = ET.parse(self.folder / "picture.svg").getroot()
+        self.assertEqual([element.get("class") for element in root.iter(f"{SVG}polyline")], ["signal"] * 2)
 
     def test_experiments_with_loops_contacts_and_masses_in_a_row_are_drawn(self):
         for name in ("mechanisms/slider_crank", "mechanisms/bouncing_ball", "three_mass_chain/modes", "two_beam/best"):

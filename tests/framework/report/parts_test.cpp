@@ -3,9 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "framework/base/text/base64.hpp"
 #include "framework/report/data_table.hpp"
 #include "framework/report/html.hpp"
-#include "framework/report/sections/selected_responses.hpp"
 #include "framework/report/sections/sweep_groups.hpp"
 
 namespace twinmap {

@@ -47,6 +47,16 @@ TEST_F(ReportTest, NoTextOfTheExperimentBecomesMarkup) {
       std::string::npos);
 }
 
+TEST_F(ReportTest, BeginsWithTheMechanismAndStaysSmall) {
+  const std::string html = make().html;
+  const std::size_t picture = html.find("<figure id=\"mechanism\"><svg"), end = html.find("</svg>", picture);
+  ASSERT_NE(picture, std::string::npos);
+  EXPECT_LT(picture, html.find("<section"));
+  EXPECT_LT(end - picture, 60000U);
+  EXPECT_NE(html.find("twinmap view RUN"), std::string::npos);
+  EXPECT_LT(html.size(), 2000000U);
+}
+
 TEST_F(ReportTest, TextsInFiguresReadBackAsTheyWere) {
   const nlohmann::json data = readPageData(make().html);
   EXPECT_EQ(data["tables"]["failures"]["reason"][0], kHostile);

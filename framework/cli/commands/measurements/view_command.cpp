@@ -1,15 +1,17 @@
 #include <filesystem>
 #include <iostream>
-#include <map>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
-#include "framework/cli/commands/measurements/infer_estimate.hpp"
+#include "framework/cli/commands/measurements/replay_measurement.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
+#include "framework/inference/select_estimate.hpp"
+#include "framework/view/make_scene.hpp"
+#include "framework/view/measured.hpp"
 #include "framework/view/page.hpp"
 #include "framework/view/picture.hpp"
 
@@ -29,17 +31,29 @@ ExperimentSpec loadExperiment(const ExperimentArguments& arguments) {
   return InferenceSource(arguments.file).getExperiment();
 }
 
-/// The centre of the bounds, but for what was estimated.
-Eigen::VectorXd makePoint(const ModelSpec& model, const std::map<std::string, double>& estimated) {
-  const std::vector<ParameterSpec> sampled = collectSampled(model);
-  Eigen::VectorXd point = calcBoxCenter(sampled);
-  for (std::size_t i = 0; i < sampled.size(); ++i) {
-    const auto found = estimated.find(sampled[i].name.text);
-    if (found != estimated.end()) {
-      point[static_cast<Eigen::Index>(i)] = found->second;
-    }
-  }
-  return point;
+using twinmap::view::Scene;
+
+/// The measurement beside the model before and after it.
+Scene makeMeasuredScene(const ViewArguments& arguments) {
+  ReplayArguments asked;
+  asked.run = arguments.experiment.file;
+  asked.file = arguments.measurement;
+  asked.start = arguments.start;
+  asked.known = arguments.known;
+  asked.draws = 2;  // of the band, which is not drawn
+  const Replay replay = replayMeasurement(InferenceSource(asked.run), asked);
+  const std::vector<std::string> statuses = selectEstimate(replay.inferred).statuses;
+  const std::string status = statuses.empty() ? "not judged" : statuses.front();
+  Scene scene = twinmap::view::makeScene(replay.experiment, replay.nominal.point, "nominal");
+  twinmap::view::addMotion(replay.experiment, replay.updated.point, "updated (" + status + ")", scene);
+  twinmap::view::addMeasurement(
+      replay.experiment, replay.updated.point,
+      {replay.layout, replay.measured, replay.updated.response, replay.noise_stddev}, scene);
+  return scene;
+}
+
+Scene makeNominalScene(const ExperimentSpec& experiment) {
+  return twinmap::view::makeScene(experiment, calcBoxCenter(collectSampled(experiment.model)), "nominal");
 }
 
 }  // namespace
@@ -47,13 +61,10 @@ Eigen::VectorXd makePoint(const ModelSpec& model, const std::map<std::string, do
 void view(const ViewArguments& arguments) {
   const ExperimentSpec experiment = loadExperiment(arguments.experiment);
   requireOneTrial(experiment, "a picture is of one");
-  twinmap::view::Scene scene =
-      twinmap::view::makeScene(experiment, makePoint(experiment.model, {}), "nominal");
-  if (!arguments.measurement.empty()) {
-    const robots::RobotEstimate estimate =
-        inferEstimate(arguments.experiment.file, arguments.measurement, arguments.start, arguments.known);
-    twinmap::view::addMotion(experiment, makePoint(experiment.model, estimate.getMeans()),
-                             "updated (" + estimate.status + ")", scene);
+  const Scene scene =
+      arguments.measurement.empty() ? makeNominalScene(experiment) : makeMeasuredScene(arguments);
+  for (const std::string& remark : scene.remarks) {
+    std::cerr << "warning: " << remark << "\n";
   }
   if (!arguments.svg.empty()) {
     writeTextFile(arguments.svg, twinmap::view::makePicture(scene));

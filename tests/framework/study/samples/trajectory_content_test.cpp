@@ -57,7 +57,8 @@ TEST(TrajectoryContent, WhatDoesNotChangeAResponseDoesNot) {
        {"name=other", "description=x", "seed=2", "noise.scale=3", "design.train.samples=70",
         "design.train.method=sobol", "transform=[z_score: {}]", "inverse_map.gp.covariance=matern52",
         "parameters.k_y.description=spring", "parameters.k_y.relative_to=range", "simulation.max_wall_time=5",
-        "simulation.allowed_failures=0.5", "report.over=[d_y, k_y]", "measurement.start=1",
+        "simulation.allowed_failures=0.5", "report.over=[d_y, k_y]",
+        "system.bodies.beam1.shapes=[{box: [1, 1, 1]}]", "measurement.start=1",
         "parameters.k_y.bounds=[6, 14]"}) {  // the same centre
     EXPECT_EQ(write({same}), reference) << same;
   }

@@ -1,13 +1,16 @@
-#include "framework/view/scene.hpp"
+#include "framework/view/make_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/models/make_simulator.hpp"
-#include "framework/models/mechanism/equations/calc_system_values.hpp"
-#include "framework/models/mechanism/equations/tree.hpp"
 #include "framework/models/mechanism/model_context.hpp"
+#include "framework/simulation/simulation_failure.hpp"
+#include "framework/view/modes.hpp"
+#include "framework/view/point_values.hpp"
+#include "framework/view/shapes.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap::view {
@@ -17,7 +20,11 @@ using equations::BodyValues;
 using equations::SystemValues;
 using Matrix = algebra::Mat33<double>;
 
-constexpr int kFrames = 201;
+/// As many as a page of 3 MB has room for.
+int countFrames(const ModelSpec& model) {
+  constexpr int kMost = 201, kPoses = 12000;
+  return std::clamp(kPoses / static_cast<int>(1 + model.system.bodies.size()), 51, kMost);
+}
 
 Ellipsoid calcEllipsoid(const BodyValues<double>& body) {
   Ellipsoid ellipsoid;
@@ -54,6 +61,11 @@ void addBodies(const ModelSpec& model, const SystemValues<double>& values, Scene
     scene.bodies.push_back({model.system.bodies[i - 1].name.text, body.parent, body.mass > 0.0,
                             calcEllipsoid(body), getEnumText(body.type), body.in_parent, axis});
   }
+  for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
+    SceneBody& body = scene.bodies[i];
+    body.shapes = makeShapes(model.system.bodies[i - 1], body.ellipsoid, scene.remarks);
+  }
+  limitTriangles(kMostTriangles, scene.bodies, scene.remarks);
 }
 
 void addLines(const SystemValues<double>& values, Scene& scene) {
@@ -67,6 +79,48 @@ void addLines(const SystemValues<double>& values, Scene& scene) {
     if (closure.kind == equations::ClosureKind::kRod) {
       scene.lines.push_back(
           {"rod", closure.from.body, closure.to.body, closure.from.point, closure.to.point});
+    }
+  }
+}
+
+template <class Element, class = void>
+constexpr bool kActsOnCoordinate = false;
+template <class Element>
+constexpr bool kActsOnCoordinate<Element, std::void_t<decltype(std::declval<Element>().coordinate)>> = true;
+
+/// What acts on coordinates is named at their joints.
+void addActing(const SystemNames& names, const SystemValues<double>& values, Scene& scene) {
+  const auto add = [&](int coordinate, const std::string& kind) {
+    std::vector<std::string>& acting =
+        scene.bodies[names.getCoordinates()[static_cast<std::size_t>(coordinate)].body].acting;
+    if (std::find(acting.begin(), acting.end(), kind) == acting.end()) {
+      acting.push_back(kind);
+    }
+  };
+  values.elements.forEachList([&](const auto& list) {
+    using Element = typename std::decay_t<decltype(list)>::value_type;
+    if constexpr (kActsOnCoordinate<Element>) {
+      for (const Element& element : list) {
+        add(element.coordinate, Element::kKind.noun);
+      }
+    }
+  });
+  for (const auto& closure : values.closures) {
+    if (closure.kind == equations::ClosureKind::kGear) {
+      add(closure.coordinate, "gear");
+    }
+  }
+}
+
+/// Of coincident points, points in planes and what rolls, once each.
+void addConstraints(const SystemValues<double>& values, Scene& scene) {
+  int last = -1;
+  for (const auto& closure : values.closures) {
+    const bool has_point =
+        closure.kind == equations::ClosureKind::kPlane || closure.kind == equations::ClosureKind::kRolling;
+    if (has_point && closure.constraint != last) {
+      scene.marks.push_back({"constraint", "", closure.to.body, closure.to.point, {}});
+      last = closure.constraint;
     }
   }
 }
@@ -95,7 +149,7 @@ void addMarks(const ModelSpec& model, const SystemNames& names, const NamedValue
 }
 
 /// All coordinates, then the experiment's outputs.
-ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coordinates) {
+ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coordinates, double end) {
   ModelSpec drawn = model;
   std::vector<OutputSpec> outputs;
   for (const std::string& coordinate : coordinates) {
@@ -104,38 +158,17 @@ ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coor
     output.coordinate = Name{coordinate, {}};
     outputs.push_back(output);
   }
-  constexpr double kAnInstant = 1e-9;  // s: of what has modes alone, its beginning is drawn
-  drawn.simulation.duration = std::max(drawn.simulation.duration, kAnInstant);
+  constexpr double kAnInstant = 1e-9;  // s: of what stands still or has modes alone, its beginning is drawn
+  drawn.simulation.duration = std::max(end, kAnInstant);
   drawn.outputs.insert(drawn.outputs.begin(), outputs.begin(), outputs.end());
   return drawn;
 }
 
 Eigen::VectorXd makeTimes(const ModelSpec& model) {
   const double duration = model.simulation.duration;
-  return duration > 0.0 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(kFrames, 0.0, duration))
+  return duration > 0.0 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(countFrames(model), 0.0, duration))
                         : Eigen::VectorXd(Eigen::VectorXd::Zero(1));
 }
-
-std::vector<Pose> calcPoses(const SystemValues<double>& values, const std::vector<double>& coordinates) {
-  const std::vector<double> still(coordinates.size(), 0.0);
-  std::vector<Pose> poses;
-  for (const auto& motion : equations::calcMotions(values, coordinates, still)) {
-    poses.push_back(motion.pose);
-  }
-  return poses;
-}
-
-/// A system's numbers at a point.
-struct PointValues {
-  PointValues(const ModelSpec& model, const Eigen::VectorXd& point) : names(model.system), numbers(model) {
-    numbers.update(point);
-    values = equations::calcSystemValues(model.system, names, numbers.getValues());
-  }
-
-  SystemNames names;
-  ModelNumbers numbers;
-  SystemValues<double> values;
-};
 
 }  // namespace
 
@@ -148,47 +181,91 @@ void addMotion(const ExperimentSpec& experiment, const Eigen::VectorXd& point, c
     at.emplace(experiment.model, point);
     coordinates = at->names.getCoordinateNames();
   }
-  ModelSpec model = makeDrawn(experiment.model, coordinates);
+  ModelSpec model = makeDrawn(experiment.model, coordinates, scene.times[scene.times.size() - 1]);
   const std::unique_ptr<Simulator> simulator = makeTrustedSimulator(model, scene.times);
   const ResponseLayout& layout = simulator->getLayout();
   Eigen::MatrixXd response(layout.getRowCount(), 1);
   SampleStatus status;
   simulator->simulate(Eigen::MatrixXd(point), response, &status);
   if (!status.ok) {
-    throw std::runtime_error("the simulation failed: " + status.reason);
+    throw SimulationFailure("the simulation failed: " + status.reason);
   }
   const Eigen::Index frames = scene.times.size(), n = static_cast<Eigen::Index>(coordinates.size());
   for (Eigen::Index i = n; scene.motions.empty() && i < layout.getOutputCount(); ++i) {
     scene.outputs.push_back({layout.output_names[i], layout.output_units[i]});
   }
-  SceneMotion drawn{motion, {}, Eigen::MatrixXd(layout.getOutputCount() - n, frames)};
+  SceneMotion drawn{motion,
+                    {},
+                    Eigen::MatrixXd(layout.getOutputCount() - n, frames),
+                    response.col(0).head(n * frames).reshaped(frames, n).transpose()};
   for (Eigen::Index output = n; output < layout.getOutputCount(); ++output) {
     drawn.outputs.row(output - n) = response.col(0).segment(layout.getRow(output, 0), frames).transpose();
   }
   for (Eigen::Index frame = 0; has_bodies && frame < frames; ++frame) {
-    std::vector<double> q;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      q.push_back(response(layout.getRow(i, frame), 0));
-    }
-    drawn.poses.push_back(calcPoses(at->values, q));
+    const auto q = drawn.coordinates.col(frame);
+    drawn.poses.push_back(calcPoses(at->values, {q.begin(), q.end()}));
   }
   scene.motions.push_back(std::move(drawn));
 }
 
-Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
+namespace {
+
+/// All but the motion.
+Scene describeMechanism(Eigen::VectorXd times, const ExperimentSpec& experiment,
+                        const Eigen::VectorXd& point) {
   const ModelSpec& model = experiment.model;
   Scene scene;
   scene.name = experiment.name.text;
-  scene.times = makeTimes(model);
+  scene.times = std::move(times);
   if (!model.source) {
     const PointValues at(model, point);
     scene.gravity = at.values.gravity;
     addBodies(model, at.values, scene);
     addLines(at.values, scene);
+    addActing(at.names, at.values, scene);
+    addConstraints(at.values, scene);
     addMarks(model, at.names, at.numbers.getValues(), at.values, scene);
   }
-  addMotion(experiment, point, motion, scene);
   return scene;
+}
+
+/// As the file says that it begins: neither an equilibrium is sought nor are loops closed.
+Scene makeUnsolved(const ExperimentSpec& experiment, const Eigen::VectorXd& point) {
+  Scene scene = describeMechanism(Eigen::VectorXd::Zero(1), experiment, point);
+  ModelContext context(experiment.model);
+  context.numbers.update(point);
+  const Eigen::VectorXd q = calcInitialValues(context).coordinates;
+  const PointValues at(experiment.model, point);
+  scene.motions.push_back({"", {calcPoses(at.values, {q.begin(), q.end()})}, Eigen::MatrixXd(0, 1), q});
+  return scene;
+}
+
+}  // namespace
+
+Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
+  try {
+    Scene scene = describeMechanism(makeTimes(experiment.model), experiment, point);
+    addMotion(experiment, point, motion, scene);
+    addModes(experiment.model, point, scene);
+    return scene;
+  } catch (const SimulationFailure& failure) {
+    if (experiment.model.source) {
+      throw;
+    }
+    Scene still = makeStill(experiment, point);
+    still.remarks.push_back("the mechanism stands still: " + std::string(failure.what()));
+    return still;
+  }
+}
+
+Scene makeStill(const ExperimentSpec& experiment, const Eigen::VectorXd& point) {
+  try {
+    Scene scene = describeMechanism(Eigen::VectorXd::Zero(1), experiment, point);
+    addMotion(experiment, point, "", scene);
+    return scene;
+  } catch (const SimulationFailure&) {
+    return makeUnsolved(experiment, point);
+  }
 }
 
 }  // namespace twinmap::view
