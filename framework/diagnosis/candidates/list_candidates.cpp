@@ -88,7 +88,7 @@ std::vector<TermCandidate> listCandidates(const ExperimentSpec& experiment, cons
   for (const std::vector<TermCandidate>& more :
        {listBodyCandidates(model, sizes), listOutputCandidates(model, sizes),
         listSignalCandidates(model, sizes), listOwnCandidates(experiment.candidates, sizes),
-        listMemoryCandidates(model, sizes)}) {
+        listMemoryCandidates(model, sizes), listLoadCandidates(model, sizes)}) {
     candidates.insert(candidates.end(), more.begin(), more.end());
   }
   return candidates;
