@@ -47,8 +47,8 @@ bool hasInertialParameters(const ModelSpec& model);
 
 /// Base parameters as identification of robots finds them, by a rank-revealing factorisation of the regressor
 /// (Gautier 1991): the responses' derivatives by standard terms, here of its Gram matrix with pivots.
-/// information: of the parameters (p x p) at a point, per width of their bounds. Where responses are linear
-/// in the terms they hold everywhere, else near the point. Empty where each parameter is determined by
+/// information: of the parameters (p x p) at a point, per width of their bounds. They hold everywhere if
+/// responses are linear in the terms, else near the point. Empty where each parameter is determined by
 /// itself. Cost: some p^4 flops.
 BaseParameters findStandardSums(const Eigen::MatrixXd& information, const Eigen::VectorXd& point,
                                 const ModelSpec& model);
