@@ -26,6 +26,15 @@ std::vector<DerivedValue> identify(const std::vector<Ridge>& ridges,
                                      findUnit(combination, parameters), drawn, estimate.draws.weights,
                                      floor));
     }
+    MatrixXd base(static_cast<Index>(ridge.base.sums.size()), points.cols());
+    for (Index i = 0; base.rows() > 0 && i < points.cols(); ++i) {
+      base.col(i) = ridge.base.calc(points.col(i));
+    }
+    for (Index k = 0; k < base.rows(); ++k) {
+      values.push_back(describeDrawn("base_" + std::to_string(1 + k),
+                                     ridge.base.getUnit(static_cast<std::size_t>(k)), base.row(k),
+                                     estimate.draws.weights, floor));
+    }
   }
   return values;
 }

@@ -45,7 +45,11 @@ class ExperimentWriter {
         addDrive(body);
       }
     }
-    addActuators();
+    if (!options_.from_motion) {
+      addActuators();
+    } else if (robot_.actuators) {
+      robot_.leaveOut(0, "actuators", "--from-motion measures what they exert");
+    }
     addClosures();
     noteFrames();
     noteGround(robot_, assembly_);
@@ -53,7 +57,7 @@ class ExperimentWriter {
         writeParameters() + "system:\n  gravity: " + writeGravity() + "\n  bodies:\n" + bodies +
         writeList("force_laws", forces_) + writeList("springs", springs_) + writeList("dampers", dampers_) +
         writeList("friction", friction_) + writeList("armature", armature_) + writeList("stops", stops_) +
-        writeList("constraints", gears_) + writeTail();
+        writeList("constraints", gears_) + writeList("motions", motions_) + writeTail();
     return writeHead() + experiment;
   }
 
@@ -217,12 +221,25 @@ class ExperimentWriter {
                       writeNumber(joint.mimic->multiplier), writeNumber(joint.mimic->offset)));
       return;
     }
+    if (options_.from_motion) {
+      addMotion(joint, q);
+      return;
+    }
     if (robot_.actuators) {
       return;
     }
     const std::string signal = names_.take(q + (joint.isAngle() ? "_torque" : "_force"));
     forces_.push_back(fmt::format("{{coordinate: {}, force: {}}}", q, signal));
     addSignal(signal, fmt::format("unit: {}, ", unit));
+  }
+
+  /// The coordinate moves as recorded, and what its drive then exerts is measured.
+  void addMotion(const Joint& joint, const std::string& q) {
+    const std::string signal = names_.take(q + "_motion");
+    motions_.push_back(fmt::format("{{coordinate: {}, follows: {}}}", q, signal));
+    addSignal(signal, q, fmt::format("unit: {}, ", joint.isAngle() ? "rad" : "m"),
+              "sines: [{amplitude: 0, frequency: 1}]", ", interpolation: cubic");
+    drives_.push_back({names_.take(q + (joint.isAngle() ? "_torque" : "_force")), q});
   }
 
   void addLoss(const Joint& joint, const std::string& q, const std::string& unit) {
@@ -315,15 +332,20 @@ class ExperimentWriter {
     }
   }
 
-  /// As recorded, else 0.
+  /// A force, as recorded, else 0.
   void addSignal(const std::string& signal, const std::string& unit) {
-    const std::string* column = recording_ ? recording_->take(signal) : nullptr;
+    addSignal(signal, signal, unit, "pulses: [{amplitude: 0, start: 0, end: 1}]", "");
+  }
+
+  void addSignal(const std::string& signal, const std::string& called, const std::string& unit,
+                 const std::string& otherwise, const std::string& interpolation) {
+    const std::string* column = recording_ ? recording_->take(called) : nullptr;
     const std::string terms =
         column != nullptr
-            ? fmt::format("tables: [{{measured: {{file: {}, column: {}, time: {}, start: {}}}}}]",
+            ? fmt::format("tables: [{{measured: {{file: {}, column: {}, time: {}, start: {}}}{}}}]",
                           quote(recording_->file), quote(*column), quote(recording_->time),
-                          writeNumber(recording_->first))
-            : "pulses: [{amplitude: 0, start: 0, end: 1}]";
+                          writeNumber(recording_->first), interpolation)
+            : otherwise;
     signals_ += fmt::format("  {}: {{{}{}}}\n", signal, unit, terms);
   }
 
@@ -392,15 +414,13 @@ class ExperimentWriter {
   std::string writeTail() {
     std::string outputs, columns, noise;
     std::vector<std::string> all, recorded;
-    for (const Body& body : bodies_) {
-      for (const std::string& q : names_.takeCoordinates(body)) {
-        outputs += fmt::format("  {}: {{coordinate: {}}}\n", q, q);
-        noise += (noise.empty() ? "" : ", ") + q + ": unknown";
-        all.push_back(q);
-        if (const std::string* column = recording_ ? recording_->take(q) : nullptr) {
-          columns += (columns.empty() ? "" : ", ") + q + ": " + quote(*column);
-          recorded.push_back(q);
-        }
+    for (const auto& [name, quantity] : listOutputs()) {
+      outputs += fmt::format("  {}: {{{}}}\n", name, quantity);
+      noise += (noise.empty() ? "" : ", ") + name + ": unknown";
+      all.push_back(name);
+      if (const std::string* column = recording_ ? recording_->take(name) : nullptr) {
+        columns += (columns.empty() ? "" : ", ") + name + ": " + quote(*column);
+        recorded.push_back(name);
       }
     }
     if (all.empty()) {
@@ -409,6 +429,35 @@ class ExperimentWriter {
     return (signals_.empty() ? "" : "excitation:\n" + signals_) + "outputs:\n" + outputs +
            writeSamples(recording_ ? recorded : all) + "noise: {stddev: {" + noise + "}}\n" +
            writeMeasurement(columns);
+  }
+
+  /// A motion is prescribed of a joint with one coordinate.
+  void requireSingle(const Body& body) const {
+    if (body.joint == nullptr || !body.joint->isSingle()) {
+      failAt(
+          robot_.file, body.joint != nullptr ? body.joint->line : body.link->line,
+          "link '" + body.link->name +
+              "' flies, turns as a ball or moves in a plane: --from-motion knows joints that turn or slide "
+              "alone. Simulate the motion from the forces: leave --from-motion out");
+    }
+  }
+
+  /// Names, and what is measured: how the robot moves, or what its drives exert.
+  std::vector<std::pair<std::string, std::string>> listOutputs() {
+    std::vector<std::pair<std::string, std::string>> outputs;
+    for (const Drive& drive : drives_) {
+      outputs.emplace_back(drive.output, "force_of: " + drive.coordinate);
+    }
+    for (const Body& body : bodies_) {
+      for (const std::string& q : names_.takeCoordinates(body)) {
+        if (options_.from_motion) {
+          requireSingle(body);
+        } else {
+          outputs.emplace_back(q, "coordinate: " + q);
+        }
+      }
+    }
+    return outputs;
   }
 
   std::string writeSamples(const std::vector<std::string>& outputs) const {
@@ -451,7 +500,11 @@ class ExperimentWriter {
   ChosenParameters parameters_;
   std::string gravity_;
   std::optional<Recording> recording_;
-  std::vector<std::string> forces_, springs_, dampers_, friction_, armature_, stops_, gears_;
+  struct Drive {
+    std::string output, coordinate;
+  };
+  std::vector<Drive> drives_;  ///< whose forces are measured
+  std::vector<std::string> motions_, forces_, springs_, dampers_, friction_, armature_, stops_, gears_;
   std::string signals_;
 };
 

@@ -14,6 +14,7 @@ struct ImportOptions {
   std::vector<std::string> parameters;   ///< inertia, friction, armature, damping
   std::vector<std::string> joints;       ///< that move; empty: all
   std::optional<Recording> recording{};  ///< whose columns are called as coordinates and signals
+  bool from_motion = false;              ///< the motion is known, and what drives exert is measured
   bool stops = false;                    ///< limits of joints become rigid stops
   double relative_stddev = 0.2;          ///< of the parameters' priors
 };

@@ -193,6 +193,7 @@ struct ImportArguments {
   std::vector<std::string> parameters;  ///< inertia, friction, armature, damping
   std::vector<std::string> joints;      ///< that move; empty: all
   std::string csv;                      ///< table whose columns are called as coordinates; "": none
+  bool from_motion = false;             ///< it is recorded, and the drives' forces are measured
   bool stops = false;                   ///< limits of joints become stops
   bool strict = false;                  ///< what is not carried over is an error
 };

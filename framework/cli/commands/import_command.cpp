@@ -50,6 +50,7 @@ void importRobot(const ImportArguments& arguments) {
   options.base = arguments.base == "free" ? robots::Base::kFree : robots::Base::kFixed;
   options.parameters = arguments.parameters;
   options.joints = arguments.joints;
+  options.from_motion = arguments.from_motion;
   options.stops = arguments.stops;
   if (!arguments.csv.empty()) {
     options.recording = readRecording(arguments.csv);

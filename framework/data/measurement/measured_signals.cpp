@@ -238,6 +238,12 @@ void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& recording, 
   });
 }
 
+bool isFollowed(const SignalSpec& signal, const ModelSpec& model) {
+  const std::vector<MotionSpec>& motions = model.system.motions;
+  return std::any_of(motions.begin(), motions.end(),
+                     [&](const MotionSpec& motion) { return motion.follows.text == signal.name.text; });
+}
+
 bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start, double beside) {
   bool changed = false;
   visitMeasured(experiment, [&](const SignalSpec& signal, TableSpec& target) {
@@ -248,8 +254,9 @@ bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, d
     }
     TableSpec own = target;
     const Bounds delays = calcDelays(experiment.model, target);
+    const double margin = isFollowed(signal, experiment.model) ? 0.0 : beside;
     fillRecorded(own, readSignal(recording, spec), signal.unit, zero, experiment.model.simulation.duration,
-                 {delays.lower - beside, delays.upper + beside, {}});
+                 {delays.lower - margin, delays.upper + margin, {}});
     changed = changed || own.times != target.times || own.values != target.values;
     target = std::move(own);
   });

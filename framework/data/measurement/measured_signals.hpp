@@ -16,8 +16,12 @@ void loadMeasuredSignals(ExperimentSpec& experiment);
 /// (measurement.start.when) is the start of both.
 void replaceMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start);
 
+/// Whether a prescribed motion takes the signal's speed and acceleration.
+bool isFollowed(const SignalSpec& signal, const ModelSpec& model);
+
 /// The same, but where a recording ends within `beside` (s) of the simulation, its first and last value are
-/// held; a file of its own is read only where the start has moved. Whether any value changed. Throws
+/// held, but of a signal that a motion follows: where it stopped, its accelerations would be those of a blow;
+/// a file of its own is read only where the start has moved. Whether any value changed. Throws
 /// MeasurementError, naming the file, where it cannot be read, has a gap that cannot be bridged (bridgeGaps),
 /// or does not cover the simulation.
 bool followMeasuredSignals(ExperimentSpec& experiment, const Table& recording, double start, double beside);

@@ -77,8 +77,14 @@ void continueAlongDerivatives(Simulator& simulator, const std::vector<ParameterS
   for (Index i = 0; i < points.cols(); ++i) {
     const MatrixXd neighbours = makeNeighbours(parameters, points.col(i));
     for (Index k = 0; k < neighbours.cols(); ++k) {
-      responses.col(i).segment(k * rows, rows) =
-          centers.col(i) + derivatives.middleCols(i * p, p) * (neighbours.col(k) - points.col(i));
+      auto response = responses.col(i).segment(k * rows, rows);
+      response = centers.col(i);
+      for (Index j = 0; j < p; ++j) {
+        if (const double step = neighbours(j, k) - points(j, i);
+            step != 0.0) {  // one parameter moves, or none
+          response += derivatives.col(i * p + j) * step;
+        }
+      }
     }
   }
 }

@@ -89,7 +89,7 @@ std::vector<TermCandidate> listCandidates(const ExperimentSpec& experiment, cons
        {listBodyCandidates(model, sizes), listOutputCandidates(model, sizes),
         listSignalCandidates(model, sizes), listOwnCandidates(experiment.candidates, sizes),
         listMemoryCandidates(model, sizes), listLawCandidates(model, sizes),
-        listStartCandidates(model, sizes)}) {
+        listStartCandidates(model, sizes), listLoadCandidates(model, sizes)}) {
     candidates.insert(candidates.end(), more.begin(), more.end());
   }
   return candidates;

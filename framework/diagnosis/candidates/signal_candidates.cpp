@@ -250,6 +250,9 @@ std::vector<TermCandidate> listSignalCandidates(const ModelSpec& model, const Mo
   std::vector<TermCandidate> candidates;
   for (std::size_t i = 0; i < model.excitation.size(); ++i) {
     const SignalSpec& signal = model.excitation[i];
+    if (isFollowed(signal, model)) {
+      continue;  // it acts through no expression, and may not stop where a recording ends
+    }
     candidates.push_back(makeGain(signal.name.text));
     if (canBeDelayed(signal)) {
       candidates.push_back(makeDelay(i, signal.name.text, kLongDelay * duration));

@@ -7,6 +7,7 @@
 
 #include "framework/estimation/posterior/basins/straight_ridge.hpp"
 #include "framework/estimation/posterior/basins/valley.hpp"
+#include "framework/estimation/posterior/draws/followed_draws.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
 
@@ -137,6 +138,21 @@ bool isLinearFor(MisfitSurface& surface, const Basin& basin, const MatrixXd& dra
   return calcDisplacements(surface, basin, points).maxCoeff() <= kFarthest;
 }
 
+/// Of many, where no weights make the draws those of the posterior; in the parameters as they are.
+Sampling sampleFollowed(const PosteriorProblem& problem, const BasinSearch& found,
+                        const ProblemSurface& whole, const PosteriorDrawOptions& options) {
+  Sampling sampling;
+  sampling.plain = listAll(problem);
+  ProblemSurface plain(problem, sampling.plain);
+  MisfitSurface& surface = plain.upd();
+  sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);
+  sampling.drawn = drawFollowed(surface, sampling.landscape.basins.front(), options.draws, options.seed);
+  sampling.obstacle = findObstacle(problem, surface, sampling);
+  sampling.drawn.draws.points = MatrixXd(sampling.drawn.draws.points.topRows(problem.drawn));
+  sampling.simulations = surface.getSimulations();
+  return sampling;
+}
+
 /// In the parameters as they are.
 Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
                      const PosteriorDrawOptions& options) {
@@ -175,6 +191,7 @@ bool mayBend(const PosteriorProblem& problem) {
 Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& found, ProblemSurface& whole,
                          const PosteriorDrawOptions& options) {
   const bool may_bend = mayBend(problem);
+  constexpr double kHopeless = 1e4;  // 6e10 with the 129 parameters of an arm of seven joints
   const ChosenShape shape = chooseShape(problem, found, whole, options.seed);
   int simulations = 0;
   if (may_bend && !shape.is_straight) {
@@ -183,6 +200,9 @@ Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& fou
       return in_sums;
     }
     simulations += in_sums.simulations;
+  }
+  if (shape.nonlinearity.value_or(0.0) > kHopeless) {
+    return sampleFollowed(problem, found, whole, options);
   }
   Sampling sampling = sampleBasins(problem, found, shape, whole, options);
   sampling.simulations += simulations;
@@ -193,6 +213,14 @@ Sampling samplePosterior(const PosteriorProblem& problem, const BasinSearch& fou
       return walked;
     }
     sampling.simulations = walked.simulations;
+  }
+  if (!sampling.obstacle.empty() && problem.drawn > kManyUnknown) {
+    Sampling followed = sampleFollowed(problem, found, whole, options);
+    followed.simulations += sampling.simulations;
+    if (followed.obstacle.empty()) {
+      return followed;
+    }
+    sampling.simulations = followed.simulations;
   }
   return sampling;
 }

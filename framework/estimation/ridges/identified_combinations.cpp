@@ -125,6 +125,22 @@ std::string makeFlowMap(const DerivedEntry& entry) {
   return "{value: " + entry.expression + (entry.unit.empty() ? "" : ", unit: " + entry.unit) + "}";
 }
 
+std::string nameBase(std::size_t sum) {
+  return "base_" + std::to_string(1 + sum);
+}
+
+std::string describeBase(const Ridge& ridge) {
+  std::string text = fmt::format(
+      "the features determine base parameters (of bodies m, m times the centre, and the tensor about the "
+      "origin "
+      "of the frame), {} of which are not single parameters:",
+      ridge.base.sums.size());
+  for (std::size_t k = 0; k < ridge.base.sums.size(); ++k) {
+    text += "\n    " + nameBase(k) + " = " + ridge.base.describe(k);
+  }
+  return text;
+}
+
 /// Whether one of the gradients (q x p) at the point is, in widths, that of the combination or of a function
 /// of it.
 bool isAmong(const Combination& combination, const MatrixXd& gradients, const VectorXd& point,
@@ -176,6 +192,32 @@ std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const Ma
   return nameRidges(findFlatDirections(looked_at, points(Eigen::all, places)), parameters, of);
 }
 
+bool hasManyForNames(const ModelSpec& model) {
+  constexpr std::size_t kMost = 16, kMostOfAny = 64;  // hours, where all pairs of terms are tried
+  const std::size_t count = model.parameters.size();
+  return count > kMostOfAny || (count > kMost && hasInertialParameters(model));
+}
+
+std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const MatrixXd& points,
+                              const ModelSpec& model, RidgePoints of) {
+  if (!hasManyForNames(model)) {
+    return findRidges(information, points, model.parameters, of);
+  }
+  const auto there = std::find_if(information.begin(), information.end(),
+                                  [](const MatrixXd& one) { return one.size() > 0; });
+  if (there == information.end()) {
+    return {};
+  }
+  Ridge ridge;
+  ridge.base = findStandardSums(*there, points.col(there - information.begin()), model);
+  if (ridge.base.sums.empty()) {
+    return {};
+  }
+  ridge.parameters = ridge.base.parameters;
+  ridge.dimension = ridge.base.undetermined;
+  return {ridge};
+}
+
 std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {
   std::vector<std::string> names;
   for (const Index j : ridge.parameters) {
@@ -185,6 +227,9 @@ std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>&
 }
 
 std::string describeRidge(const Ridge& ridge, const std::vector<ParameterSpec>& parameters) {
+  if (!ridge.base.sums.empty()) {
+    return describeBase(ridge);
+  }
   const std::string names = listParameters(ridge, parameters);
   const std::string local =
       ridge.local.empty() ? "" : " near the best fit only " + listExpressions(ridge.local, parameters);
@@ -210,8 +255,18 @@ std::vector<DerivedEntry> listDerived(const std::vector<Ridge>& ridges,
       for (int number = 2; !taken.insert(name).second; ++number) {
         name = base + "_" + std::to_string(number);
       }
-      entries.push_back({name, makeExpression(combination, parameters), findUnit(combination, parameters),
-                         combination.residual});
+      entries.push_back({name,
+                         makeExpression(combination, parameters),
+                         findUnit(combination, parameters),
+                         combination.residual,
+                         {}});
+    }
+    for (std::size_t k = 0; k < ridge.base.sums.size(); ++k) {
+      entries.push_back({nameBase(k), ridge.base.makeExpression(k), ridge.base.getUnit(k), 0.0, {}});
+      for (const auto& [place, coefficient] : ridge.base.sums[k].terms) {
+        entries.back().terms.emplace_back(ridge.base.standard.labels[static_cast<std::size_t>(place)],
+                                          coefficient);
+      }
     }
   }
   return entries;

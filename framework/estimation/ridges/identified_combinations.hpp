@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/estimation/derived/derived_quantities.hpp"
+#include "framework/estimation/ridges/base_parameters.hpp"
 #include "framework/estimation/ridges/combination.hpp"
 #include "framework/estimation/ridges/flat_directions.hpp"
 
@@ -22,6 +23,7 @@ struct Ridge {
   /// Sums of the parameters that are determined near the best fit alone, in the place of those that are
   /// lacking.
   std::vector<Combination> local{};
+  BaseParameters base{};  ///< of many parameters, in the place of combinations
 };
 
 /// Whether points all fit one measurement, the first one best, or are of any.
@@ -46,6 +48,14 @@ std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, c
                               const std::vector<ParameterSpec>& parameters,
                               RidgePoints of = RidgePoints::kOfAny);
 
+/// Of more than 16 parameters products and sums are not sought: base parameters are named (findStandardSums),
+/// of the first point. No ridge where all are determined.
+std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, const Eigen::MatrixXd& points,
+                              const ModelSpec& model, RidgePoints of);
+
+/// Whether base parameters are named.
+bool hasManyForNames(const ModelSpec& model);
+
 /// "m, L".
 std::string listParameters(const Ridge& ridge, const std::vector<ParameterSpec>& parameters);
 
@@ -64,6 +74,7 @@ std::vector<std::string> adviseOnRidges(const std::vector<Ridge>& ridges,
 struct DerivedEntry {
   std::string name, expression, unit;
   double residual = 0.0;
+  std::vector<std::pair<std::string, double>> terms{};  ///< of a base parameter: standard ones, coefficients
 };
 
 /// Those of all ridges, with different names.

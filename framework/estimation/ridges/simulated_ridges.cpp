@@ -39,10 +39,11 @@ bool mayHaveRidges(const BoundedDraws& draws, const std::vector<ParameterSpec>& 
 std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,
                                   const FeatureNoise& noise, const ModelSpec& model, const MatrixXd& points,
                                   int threads) {
-  const MatrixXd chosen = points.leftCols(std::min<Index>(kMostPoints, points.cols()));
+  const auto most = hasManyForNames(model) ? Index{1} : static_cast<Index>(kMostPoints);
+  const MatrixXd chosen = points.leftCols(std::min(most, points.cols()));
   const auto p = static_cast<Index>(model.parameters.size());
   return findRidges(calcInformation(simulator, extractor, noise, model, chosen, threads), chosen.topRows(p),
-                    model.parameters, RidgePoints::kOfOneMeasurement);
+                    model, RidgePoints::kOfOneMeasurement);
 }
 
 }  // namespace twinmap

@@ -321,7 +321,8 @@ class ModelCheck {
         requireKnown(output.reaction->joint, joints, "a joint, or its body");
       }
       if (output.force_of) {
-        requireKnown(*output.force_of, forces, "the name of a force element or constraint");
+        requireKnown(*output.force_of, forces,
+                     "the name of a force element or constraint, or a coordinate whose motion is prescribed");
         checkComponent(output, *findNamedForce(model_.system, output.force_of->text));
       }
     }

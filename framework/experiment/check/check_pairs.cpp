@@ -61,7 +61,9 @@ class PairCheck {
       if (!friction.switches()) {
         continue;
       }
-      requireFree(friction);
+      if (!isPrescribed(friction.coordinate) || (friction.against && !isPrescribed(*friction.against))) {
+        requireFree(friction);
+      }
       std::pair<std::string, std::string> pair{friction.coordinate.text,
                                                friction.against ? friction.against->text : ""};
       if (pair.second < pair.first) {
@@ -84,13 +86,16 @@ class PairCheck {
     }
   }
   void requireFree(const Name& name) const {
-    for (const MotionSpec& motion : model_.system.motions) {
-      if (name.text == motion.coordinate.text) {
-        throw ExperimentError(name.where, name.text,
-                              "moves as a signal says (motions), so that it can neither stick nor be thrown "
-                              "back; make what slides on it a body whose joint has it as its parent");
-      }
+    if (isPrescribed(name)) {
+      throw ExperimentError(name.where, name.text,
+                            "moves as a signal says (motions), so that it can neither stick nor be thrown "
+                            "back; make what slides on it a body whose joint has it as its parent");
     }
+  }
+  bool isPrescribed(const Name& name) const {
+    const std::vector<MotionSpec>& motions = model_.system.motions;
+    return std::any_of(motions.begin(), motions.end(),
+                       [&](const MotionSpec& motion) { return motion.coordinate.text == name.text; });
   }
 
   const ModelSpec& model_;

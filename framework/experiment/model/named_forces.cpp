@@ -60,6 +60,11 @@ std::vector<NamedForce> listNamedForces(const SystemSpec& system) {
       }
     }
   }
+  for (std::size_t i = 0; i < system.motions.size(); ++i) {
+    const Name& moved = system.motions[i].coordinate;
+    forces.push_back({moved, "prescribed motion", {true, false, false}, moved});
+    forces.back().motion = static_cast<int>(i);
+  }
   return forces;
 }
 

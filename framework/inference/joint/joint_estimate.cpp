@@ -54,18 +54,21 @@ MatrixXd sumInformation(const PosteriorProblem& problem, const VectorXd& point) 
 }
 
 std::vector<Ridge> findJointRidges(const PosteriorProblem& problem, const MatrixXd& points,
-                                   const std::vector<ParameterSpec>& parameters) {
+                                   const ModelSpec& model) {
   const auto has_derivatives = [](const MeasuredTrial& trial) { return trial.simulator->hasDerivatives(); };
   if (!std::all_of(problem.trials.begin(), problem.trials.end(), has_derivatives)) {
     return {};
   }
-  const auto p = static_cast<Index>(parameters.size());
+  const auto p = static_cast<Index>(model.parameters.size());
   std::vector<MatrixXd> information;
   for (const auto& point : points.colwise()) {
     const MatrixXd whole = sumInformation(problem, point);
     information.push_back(whole.size() > 0 ? calcMarginalInformation(whole, p) : whole);
+    if (hasManyForNames(model) && whole.size() > 0) {
+      break;  // one point names base parameters
+    }
   }
-  return findRidges(information, points.topRows(p), parameters, RidgePoints::kOfOneMeasurement);
+  return findRidges(information, points.topRows(p), model, RidgePoints::kOfOneMeasurement);
 }
 
 }  // namespace
@@ -82,7 +85,7 @@ InferredMeasurement describeTogether(const ExperimentSpec& experiment, const Pos
   inferred.prior = findStatedPrior(experiment.model);
   if (const MatrixXd points = listRidgePoints(problem, *inferred.posterior, joint, parameters);
       points.cols() > 0) {
-    inferred.ridges = findJointRidges(problem, points, parameters);
+    inferred.ridges = findJointRidges(problem, points, experiment.model);
   }
   return inferred;
 }

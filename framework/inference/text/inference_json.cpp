@@ -80,6 +80,9 @@ Json makeIdentified(const std::vector<DerivedEntry>& entries, const std::vector<
   Json identified = Json::array();
   for (std::size_t k = 0; k < entries.size(); ++k) {
     Json one{{"name", entries[k].name}, {"expression", entries[k].expression}};
+    for (const auto& [of, coefficient] : entries[k].terms) {
+      one["terms"].push_back({{"of", of}, {"coefficient", coefficient}});
+    }
     one.update(values.empty() ? Json{{"unit", entries[k].unit}} : toJson(values[k]));
     identified.push_back(one);
   }

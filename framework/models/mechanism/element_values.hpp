@@ -178,6 +178,15 @@ void placeOwnStates(ForceElements<S>& elements, int first) {
   });
 }
 
+/// Tells friction whose speed is prescribed.
+template <class S>
+void findPrescribed(const SystemNames& names, ForceElements<S>& elements) {
+  for (Friction<S>& friction : elements.template get<Friction>()) {
+    friction.is_prescribed = names.isPrescribed(friction.coordinate) &&
+                             (!friction.against || names.isPrescribed(*friction.against));
+  }
+}
+
 /// Tells friction that sticks and what touches with damping their places among the modes of switches
 /// (switches.hpp), of which rigid stops come first.
 template <class S>
@@ -216,6 +225,7 @@ ForceElements<S> calcElements(const ForceElements<Expression>& spec, const Syste
     }
   });
   placeOwnStates(elements, first_state);
+  findPrescribed(names, elements);
   placeSwitches(elements);
   return elements;
 }

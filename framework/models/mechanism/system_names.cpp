@@ -48,6 +48,10 @@ SystemNames::SystemNames(const SystemSpec& system) {
   for (const BodySpec& body : system.bodies) {
     addBody(body);
   }
+  is_prescribed_.resize(coordinates_.size());
+  for (const MotionSpec& motion : system.motions) {
+    is_prescribed_[static_cast<std::size_t>(findCoordinate(motion.coordinate))] = true;
+  }
   addStates(system);
   forces_ = listNamedForces(system);
 }
@@ -104,7 +108,8 @@ const NamedForce& SystemNames::findForce(const Name& name) const {
   for (const NamedForce& force : forces_) {
     names.push_back(force.name.text);
   }
-  return forces_[find(names, name, "the name of a force element or constraint")];
+  return forces_[find(
+      names, name, "the name of a force element or constraint, or a coordinate whose motion is prescribed")];
 }
 
 int SystemNames::findForcedCoordinate(const Name& name) const {

@@ -31,9 +31,12 @@ class SystemNames {
   /// The same, for one that takes forces; else ExperimentError.
   int findForcedCoordinate(const Name& name) const;
 
+  /// Whether the coordinate moves as a signal says.
+  bool isPrescribed(int coordinate) const { return is_prescribed_[static_cast<std::size_t>(coordinate)]; }
+
   /// The body of a joint, which is called by its own name or that of its body.
   int findJoint(const Name& name) const;
-  /// A force element or constraint by its name.
+  /// A force element, constraint or prescribed motion by its name.
   const NamedForce& findForce(const Name& name) const;
 
   const std::vector<std::string>& getCoordinateNames() const { return coordinate_names_; }
@@ -51,6 +54,7 @@ class SystemNames {
   std::vector<NamedForce> forces_;
   std::vector<std::string> coordinate_names_, state_names_;
   std::vector<CoordinatePlace> coordinates_;
+  std::vector<bool> is_prescribed_;
 };
 
 }  // namespace twinmap

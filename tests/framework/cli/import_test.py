@@ -1,5 +1,6 @@
 """twinmap import: robots' files as experiments, against Pinocchio and MuJoCo (robots/make_*_golden.py)."""
 import json
+import math
 import os
 import re
 import tempfile
@@ -118,6 +119,46 @@ class Import(unittest.TestCase):
 
     def test_accelerations_of_a_free_base_are_those_of_pinocchio(self):
         self.check_accelerations("walker", "--base", "free")
+
+    def test_forces_of_a_recorded_motion_are_those_of_pinocchio(self):
+        for state in GOLDEN["arm"]:
+            experiment, _ = import_robot(ROBOTS / "arm.urdf", "--from-motion")
+            system = experiment["system"]
+            system["armature"] = [
+                {"coordinate": joint, "inertia": inertia} for joint, inertia in GOLDEN["armature"].items()
+            ]
+            times = [0.05 * k for k in range(8)]
+            for motion in system["motions"]:
+                q, v, a = (state[key][motion["coordinate"]] for key in ("coordinates", "speeds", "accelerations"))
+                table = {
+                    "times": times,
+                    "values": [q + v * t + a * t**2 / 2 for t in times],
+                    "interpolation": "cubic",
+                }
+                experiment["excitation"][motion["follows"]] = {"unit": "1", "tables": [table]}
+            for signal in experiment["excitation"].values():
+                signal.pop("unit")
+            experiment["simulation"] = {"duration": times[-1]}
+            experiment["features"][0]["samples"].update(interval=0.05, count=2)
+            experiment["noise"] = {"stddev": dict.fromkeys(experiment["outputs"], 1)}
+            file = self.folder / "robot.yaml"
+            file.write_text(yaml.safe_dump(experiment, sort_keys=False))
+            result = call("simulate", file)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            names, values = result.stdout.splitlines()[:2]
+            found = dict(zip(names.split(","), map(float, values.split(","))))
+            expected = dict(state["forces"])
+            speed = state["speeds"]["shoulder"]  # what the URDF says of its losses
+            expected["shoulder"] += 0.7 * speed + math.copysign(0.3, speed)
+            self.assertEqual({name.rsplit("_", 1)[0] for name in found} - {"t"}, set(expected))
+            for joint, value in expected.items():
+                output = f"{joint}_force" if joint in ("rail", "left") else f"{joint}_torque"
+                self.assertAlmostEqual(found[output], value, delta=1e-9 * max(map(abs, expected.values())), msg=joint)
+
+    def test_the_motion_of_a_free_base_is_no_recording_of_joints(self):
+        result = call("import", ROBOTS / "walker.urdf", "--base", "free", "--from-motion")
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, r"walker\.urdf:\d+: link 'trunk' flies.*leave --from-motion out")
 
     def test_what_is_left_out_is_named_with_its_lines_and_is_an_error_where_that_is_asked_for(self):
         _, result = import_robot(ROBOTS / "arm.urdf")

@@ -1,4 +1,6 @@
 """Friction whose levels depend on load, against closed forms and the same law written as a force."""
+import json
+import random
 import tempfile
 import unittest
 from math import atan2, cos, pi, sin, sqrt
@@ -95,6 +97,96 @@ class LoadFriction(unittest.TestCase):
                 result = call("simulate", file)
             self.assertEqual(result.returncode, 2, friction)
             self.assertIn(message, result.stderr)
+
+
+SERVO = """
+name: servo_pendulum
+parameters:
+  J: {bounds: [0.01, 0.04], unit: kg m2}
+  W: {bounds: [0.5, 1.5], unit: N m}
+  b: {bounds: [0, 0.2], unit: N m s/rad}
+  F: {bounds: [0, 0.5], unit: N m}
+system:
+  bodies: {arm: {mass: 1, inertia: J, joint: {type: pin, coordinates: [q]}}}
+  force_laws: [{coordinate: q, force: u - W*sin(q)}]
+  friction: [{coordinate: q, model: coulomb, coulomb: F, viscous: b}]
+outputs: {q: {coordinate: q}}
+simulation: {duration: 12}
+features: [{samples: {outputs: [q], start: 0, interval: 0.02, count: 601}}]
+noise: {stddev: {q: 1e-3}}
+measurement: {time: t, columns: {q: q}}
+excitation: {u: {unit: N m, sines: ["""
+SINES = ((0.75, 0.21), (0.35, 0.47), (0.2, 0.83))  # N m, Hz
+
+
+class Servo:
+    """A pendulum behind a gear whose friction grows with the weight that it carries, by Runge and Kutta's method."""
+
+    def __init__(self, seed, carries=True):
+        self.random = random.Random(seed)
+        draw = self.random.uniform
+        self.inertia, self.weight = draw(0.018, 0.03), draw(0.8, 1.2)
+        self.viscous, self.level, self.slope = draw(0.02, 0.06), draw(0.05, 0.12), draw(0.08, 0.2) * carries
+        self.phases = [draw(0, 2 * pi) for _ in SINES]
+
+    def push(self, t):
+        return sum(a * sin(2 * pi * f * t + p) for (a, f), p in zip(SINES, self.phases))
+
+    def hold(self, q):
+        return self.level + self.slope * abs(self.weight * sin(q))
+
+    def step(self, t, q, v, side, h):
+        def accelerate(q, v, t):
+            return (self.push(t) - self.weight * sin(q) - self.viscous * v - side * self.hold(q)) / self.inertia
+
+        a = accelerate(q, v, t)
+        v2 = v + h / 2 * a
+        b = accelerate(q + h / 2 * v, v2, t + h / 2)
+        v3 = v + h / 2 * b
+        c = accelerate(q + h / 2 * v2, v3, t + h / 2)
+        v4 = v + h * c
+        d = accelerate(q + h * v3, v4, t + h)
+        return q + h / 6 * (v + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a + 2 * b + 2 * c + d)
+
+    def swing(self, h=2e-4, every=100, count=601):
+        """Angles, with noise; at rest until the torque exceeds what friction holds."""
+        q, v, side, rows = 0.0, 0.0, 0, []
+        for i in range(every * (count - 1) + 1):
+            t = i * h
+            if i % every == 0:
+                rows.append((t, q + self.random.gauss(0, 1e-3)))
+            drive = self.push(t) - self.weight * sin(q)
+            if side == 0 and abs(drive) > self.hold(q):
+                side = 1 if drive > 0 else -1
+            if side != 0:
+                q_next, v_next = self.step(t, q, v, side, h)
+                if v_next * side <= 0:  # halts within the step
+                    q, v, side = q + (q_next - q) * (v / (v - v_next) if v != v_next else 0), 0.0, 0
+                else:
+                    q, v = q_next, v_next
+        return rows
+
+    def write(self, folder):
+        sines = ", ".join(f"{{amplitude: {a}, frequency: {f}, phase: {p}}}" for (a, f), p in zip(SINES, self.phases))
+        (folder / "servo.yaml").write_text(SERVO + sines + "]}}\n")
+        rows = "".join(f"{t:.4f},{q:.9g}\n" for t, q in self.swing())
+        (folder / "m.csv").write_text("t,q\n" + rows)
+
+
+class MissingLoad(unittest.TestCase):
+    def name_terms(self, servo):
+        with tempfile.TemporaryDirectory() as folder:
+            servo.write(Path(folder))
+            result = call("diagnose", Path(folder) / "servo.yaml", Path(folder) / "m.csv", "--json")
+        steps = json.loads(result.stdout)["steps"]
+        return [step["candidates"][0]["term"] for step in steps if step["found"]]
+
+    def test_a_servo_without_it_is_told_so(self):
+        for seed in (1, 2):
+            self.assertEqual(self.name_terms(Servo(seed)), ["load_friction.q"])
+
+    def test_of_a_servo_that_carries_its_weight_without_friction_nothing_is_missing(self):
+        self.assertEqual(self.name_terms(Servo(1, carries=False)), [])
 
 
 if __name__ == "__main__":

@@ -90,7 +90,8 @@ struct EnumNames<FrictionModel> {
 ///   -(s0 z + s1 dz/dt + viscous v), with stiffness s0 and damping s1 of the bristle;
 /// - regularised: force -(g(v) tanh(v / onset_speed) + viscous v), which creeps under any load;
 /// - coulomb: it sticks while that takes at most g(0), else force -(g(v) sign(v) + viscous v). It switches
-///   (models/mechanism/equations/switches.hpp).
+///   (models/mechanism/equations/switches.hpp), unless a motion is prescribed: that says itself where it is
+///   at rest.
 template <class S>
 struct Friction {
   static constexpr ElementKind kKind{"friction", "friction", "friction on coordinates"};
@@ -102,9 +103,10 @@ struct Friction {
   std::optional<Bristle<S>> bristle{};
   std::optional<S> onset_speed{}, surface_speed{};
   OwnNameOf<S> name{};
-  int mode = -1;  ///< of coulomb: its place among the modes of switches
+  int mode = -1;               ///< of coulomb: its place among the modes of switches
+  bool is_prescribed = false;  ///< whether its speed is that of signals
 
-  bool switches() const { return model == FrictionModel::kCoulomb; }
+  bool switches() const { return model == FrictionModel::kCoulomb && !is_prescribed; }
 };
 
 template <class Fields, class S>
@@ -155,8 +157,8 @@ void addForces(const Friction<S>& s, Sum& sum) {
     const S change = v - s.bristle->stiffness * speed * deflection / level;
     sum.setStateRate(s.bristle->state, change);
     friction = s.bristle->stiffness * deflection + s.bristle->damping * change + friction;
-  } else if (s.switches()) {
-    friction = sum.calcSided(s.mode, level) + friction;
+  } else if (s.model == FrictionModel::kCoulomb) {
+    friction = (s.is_prescribed ? S(sign(v) * level) : sum.calcSided(s.mode, level)) + friction;
   } else {
     friction = level * tanh(v / *s.onset_speed) + friction;
   }

@@ -34,6 +34,7 @@ struct ModelMotion {
   std::vector<S> closure_forces;  ///< of the conditions: they act as -G' times these
   std::vector<S> held{};          ///< forces with which switches hold their coordinates
   std::vector<S> held_back{};     ///< accelerations that they take away
+  std::vector<S> driving{};       ///< forces on their coordinates that prescribed motions take
 };
 
 /// How deep something is pressed in, and how fast that grows.
@@ -119,6 +120,25 @@ void prescribe(const std::vector<Prescribed<S>>& known, LinearSystem<S>& equatio
   }
 }
 
+/// What motions take: their rows of M u' + G' l - f, before known accelerations are taken out of them.
+template <class S>
+std::vector<S> calcDriving(const std::vector<Prescribed<S>>& known, const LinearSystem<S>& equations,
+                           const std::vector<ClosureTerms<S>>& closures, const ModelMotion<S>& motion) {
+  std::vector<S> forces;
+  for (const Prescribed<S>& one : known) {
+    const int p = one.coordinate;
+    S force = -equations.right[p];
+    for (int i = 0; i < static_cast<int>(equations.right.size()); ++i) {
+      force = force + (i < p ? equations.matrix[p][i] : equations.matrix[i][p]) * motion.accelerations[i];
+    }
+    for (std::size_t k = 0; k < closures.size(); ++k) {
+      force = force + closures[k].row[p] * motion.closure_forces[k];
+    }
+    forces.push_back(force);
+  }
+  return forces;
+}
+
 /// The equations of motion of a model. `names`: its parameters and constants, `values`: calcSystemValues of
 /// them.
 template <class S>
@@ -132,9 +152,12 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   motion.state_rates = std::move(loads.state_rates);
   LinearSystem<S> equations =
       calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));
-  prescribe(state.prescribed, equations);
   std::vector<ClosureTerms<S>> closures = calcClosureTerms(values, motion.bodies, state.coordinates);
   const std::size_t closure_count = closures.size();
+  const bool is_driven = !state.prescribed.empty();
+  const LinearSystem<S> all = is_driven ? equations : LinearSystem<S>{};
+  const std::vector<ClosureTerms<S>> all_closures = is_driven ? closures : std::vector<ClosureTerms<S>>{};
+  prescribe(state.prescribed, equations);
   prescribe(state.prescribed, closures);
   ConstrainedMotion<S> solution = state.modes.empty()
                                       ? solveConstrained(std::move(equations), closures)
@@ -150,6 +173,7 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   motion.closure_forces = std::move(solution.forces);
   motion.accelerations = std::move(solution.accelerations);
   motion.pivots = std::move(solution.pivots);
+  motion.driving = calcDriving(state.prescribed, all, all_closures, motion);
   return motion;
 }
 

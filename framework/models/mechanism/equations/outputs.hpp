@@ -59,11 +59,14 @@ inline bool hasForce(const std::vector<OutputSpec>& outputs) {
                      [](const OutputSpec& output) { return output.force_of.has_value(); });
 }
 
-/// Of a force element or constraint. `values`: with what expressions of the state may use.
+/// Of a force element, constraint or prescribed motion. `values`: with what expressions of the state may use.
 template <class S>
 S calcForceOutput(const OutputSpec& spec, const SystemNames& names, const NamedValues<S>& values,
                   const SystemValues<S>& system, const ModelState<S>& state, const ModelMotion<S>& motion) {
   const NamedForce& which = names.findForce(*spec.force_of);
+  if (which.motion >= 0) {
+    return motion.driving[static_cast<std::size_t>(which.motion)];
+  }
   Loads<S> loads = makeLoads<S>(motion.bodies.size(), state.coordinates.size(), state.states.size());
   ForceSum<S, NamedValues<S>> sum(motion.bodies, state.coordinates, motion.rates, state.states, values, loads,
                                   &state.modes);

@@ -207,6 +207,39 @@ TEST(Motion, ThatIsPrescribedMovesWhatHangsOnItByItsSpeedAndAcceleration) {
   EXPECT_LT((response - expected).col(1).cwiseAbs().maxCoeff(), 1e-8 * expected.col(1).cwiseAbs().maxCoeff());
 }
 
+/// A cart that follows a sine, with friction.
+ModelSpec makeDrivenCart() {
+  ModelSpec model = makeModel(2.0);
+  model.parameters = {parameter("m", 1.0, 3.0), parameter("F", 0.5, 2.0), parameter("c", 0.1, 0.4)};
+  model.excitation = {wave("z", "0.3", "1.2")};
+  addCart(model, "q", "m");
+  Friction<Expression> friction;
+  friction.coordinate = name("q");
+  friction.model = FrictionModel::kCoulomb;
+  friction.coulomb = ex("F");
+  friction.viscous = ex("c");
+  model.system.elements.get<Friction>() = {friction};
+  model.system.motions = {{name("q"), name("z")}};
+  OutputSpec force;
+  force.name = name("force");
+  force.force_of = name("q");
+  model.outputs = {force};
+  return model;
+}
+
+TEST(Motion, TakesTheForceThatItsMassAndItsFrictionAskFor) {
+  const ModelSpec model = makeDrivenCart();
+  const double rate = 2.0 * kHalfTurn * 1.2, size = 0.3;
+  const MatrixXd response = runModel(model, kSampledTimes, calcBoxCenter(collectSampled(model)));
+  for (Eigen::Index i = 0; i < kSampledTimes.size(); ++i) {
+    const double speed = size * rate * std::cos(rate * kSampledTimes[i]);
+    const double expected = -2.0 * size * rate * rate * std::sin(rate * kSampledTimes[i]) +
+                            std::copysign(1.25, speed) + 0.25 * speed;
+    EXPECT_NEAR(response(i, 0), expected, 1e-12 * size * rate * rate) << i;
+  }
+  EXPECT_LT(compareDerivatives(model), 1e-8);
+}
+
 TEST(Motion, HasExactDerivatives) {
   EXPECT_LT(compareDerivatives(makeShaker(true)), 1e-5);
 }
