@@ -10,6 +10,7 @@ import { makeShapes } from "./shapes.js";
 const LINES = { spring: "#54a24b", damper: "#b279a2", rod: "#888888" };
 const MARKS = { force: "#f58518", sensor: "#72b7b2", contact: "#9d755d", constraint: "#eeca3b" };
 const MISFIT = new Color("#d6004c");
+const LAST = 10; // drawn after all bodies, through which it is seen
 const UP = new Vector3(0, 1, 0);
 
 /** Copies of a geometry that move with bodies: items have a body, a matrix in its frame and a colour. */
@@ -18,6 +19,7 @@ class Copies {
     this.items = items;
     this.mesh = new InstancedMesh(geometry, material, items.length);
     this.mesh.frustumCulled = false;
+    this.mesh.renderOrder = LAST;
     items.forEach((item, i) => this.mesh.setColorAt(i, item.color));
     if (items.length > 0) root.add(this.mesh);
   }
@@ -79,9 +81,11 @@ function listJoints(scene, size, hasAxis) {
 }
 
 export class Machine {
-  constructor(scene, motion, color, opacity, size) {
+  /** front: which of machines at the same place is seen. */
+  constructor(scene, motion, { color, opacity, front }, size) {
     Object.assign(this, { scene, motion, color: new Color(color), root: new Group() });
-    const solid = () => new MeshLambertMaterial({ transparent: opacity < 1, opacity });
+    const beside = { polygonOffset: true, polygonOffsetFactor: -2 * front, polygonOffsetUnits: -2 * front };
+    const solid = () => new MeshLambertMaterial({ transparent: opacity < 1, opacity, ...beside });
     const seenThrough = () => new MeshLambertMaterial({ depthTest: false, transparent: true });
     this.bodies = scene.bodies.map(() => new Object3D());
     this.bodies.forEach((body) => this.root.add(body));
@@ -89,6 +93,7 @@ export class Machine {
       if (body.shapes.length === 0) return null;
       const mesh = new Mesh(makeShapes(body.shapes), solid());
       mesh.material.color.copy(this.color);
+      mesh.renderOrder = front;
       this.bodies[i].add(mesh);
       return mesh;
     });
@@ -97,8 +102,9 @@ export class Machine {
     }));
     const ellipsoids = listEllipsoids(scene, size, this.color);
     const fineness = ellipsoids.length > 20 ? 5 : ellipsoids.length > 4 ? 10 : 20; // of many, which are small, the coarse take a third of the time
-    const glass = new MeshLambertMaterial({ transparent: true, opacity: 0.75 * opacity }); // they may hide each other
+    const glass = new MeshLambertMaterial({ transparent: true, opacity: 0.75 * opacity, ...beside }); // they may hide each other
     this.ellipsoids = new Copies(new SphereGeometry(1, 2 * fineness, fineness + 2), glass, ellipsoids, this.root);
+    this.ellipsoids.mesh.renderOrder = front;
     const rod = new CylinderGeometry(0.012 * size, 0.012 * size, 0.16 * size, 8), ball = new SphereGeometry(0.025 * size, 10, 6);
     this.parts = [
       this.ellipsoids,

@@ -4,7 +4,11 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Machine } from "./machine.js";
 import { countFrames, setPose, toMatrix } from "./poses.js";
 
-const COLORS = ["#4c78a8", "#54a24b", "#f58518"]; // of motions, as in view.css
+const LOOKS = [ // of motions, in the colours of view.css: nominal; updated, which has the colours of residuals; measured
+  { color: "#4c78a8", opacity: 1, front: 0 },
+  { color: "#54a24b", opacity: 0.8, front: 1 },
+  { color: "#f58518", opacity: 0.6, front: -1 },
+];
 
 // Without smoothed edges, which take half of the time where a processor draws; screens of small pixels do not show it.
 function makeRenderer(stage) {
@@ -66,7 +70,7 @@ export function makeStage(stage, scene) {
   if (renderer === null) return null;
   const { middle, size } = measure(scene);
   const world = makeWorld(size);
-  const machines = scene.motions.map((motion, i) => new Machine(scene, motion, COLORS[i % COLORS.length], i === 0 ? 1 : 0.6, size));
+  const machines = scene.motions.map((motion, i) => new Machine(scene, motion, LOOKS[i % LOOKS.length], size));
   machines.forEach((machine) => world.add(machine.root));
   const camera = new PerspectiveCamera(40, 1, 0.01 * size, 100 * size);
   const controls = new OrbitControls(camera, renderer.domElement);
