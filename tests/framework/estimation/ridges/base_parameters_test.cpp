@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 ParameterSpec makeParameter(const std::string& name, double lower, double upper, const std::string& unit) {
   ParameterSpec parameter;
   parameter.name.text = name;
-  parameter.bounds = {lower, upper};
+  parameter.bounds = {lower, upper, {}};
   parameter.unit = unit;
   return parameter;
 }
