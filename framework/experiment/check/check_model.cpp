@@ -313,8 +313,14 @@ class ModelCheck {
       declareOnce(getJointName(body), "a joint", joints);
     }
     std::vector<std::string> forces;
+    std::vector<std::string> moved;  // of motions that share a coordinate checkSampled() tells
     for (const NamedForce& force : listNamedForces(model_.system)) {
-      declareOnce(force.name, "a force element or constraint", forces);
+      if (force.motion < 0 || std::count(moved.begin(), moved.end(), force.name.text) == 0) {
+        declareOnce(force.name, "a force element or constraint", forces);
+      }
+      if (force.motion >= 0) {
+        moved.push_back(force.name.text);
+      }
     }
     for (const OutputSpec& output : model_.outputs) {
       if (output.reaction) {

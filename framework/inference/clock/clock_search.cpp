@@ -137,8 +137,8 @@ class ClockSearch {
     return std::min(kMost, static_cast<double>(fit.residual.size()) / static_cast<double>(kFewestTested));
   }
 
-  /// Whether noise could be left if each slip that may follow took the share of the misfit that the last one
-  /// took: the first take most.
+  /// Whether noise could be left if each slip that may follow took the share that the last one took. The
+  /// first take most.
   bool mayExplain(const ClockedFit& fit, double before) const {
     const double left = countMost(fit) - static_cast<double>(fit.faults.size());
     return !fit.isGiven() || is_unknown_ ||

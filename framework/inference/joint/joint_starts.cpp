@@ -16,8 +16,9 @@ VectorXd takeOwn(const RecordingInference& alone, const std::vector<Index>& unkn
   return alone.posterior.best.head(static_cast<Index>(unknown.size()));
 }
 
-/// The minimum of the sum of the recordings' quadratic misfits about their own minima, each over what it
-/// alone leaves unknown: nearly that of all together. The prior counts in each, which moves it by little.
+/// The minimum of the sum of the recordings' quadratic misfits about their own minima. Each is over what it
+/// alone leaves unknown; the sum is nearly that of all together. The prior counts in each, which moves it by
+/// little.
 VectorXd combineMinima(const PosteriorProblem& problem, const std::vector<RecordingInference>& alone,
                        const VectorXd& base) {
   const LogCoordinates coordinates(problem.unknown);

@@ -8,9 +8,10 @@
 
 namespace twinmap {
 
-/// Starts of a search of several recordings together (all unknown parameters x n): what each alone found for
-/// the machine, its first `shared` parameters, beside what the others alone found for themselves; and the
-/// mean of all, weighted by their information. Each could be simulated alone.
+/// Starts of a search of several recordings together (all unknown parameters x n). Each has what one
+/// recording alone found for the machine, its first `shared` parameters, beside what the others found for
+/// themselves. The last one has the mean of all, weighted by their information. Each could be simulated
+/// alone.
 Eigen::MatrixXd listJointStarts(const PosteriorProblem& problem, const std::vector<RecordingInference>& alone,
                                 Eigen::Index shared);
 
