@@ -1,6 +1,7 @@
 #include "framework/robots/xml/xml_file.hpp"
 
 #include <algorithm>
+#include <boost/locale/utf.hpp>
 #include <filesystem>
 #include <sstream>
 
@@ -21,11 +22,29 @@ std::string readText(const std::string& path) {
   return readBytes(path);
 }
 
+/// The first byte that UTF-8 lacks, or of a control character, which YAML refuses; npos of none.
+std::size_t findForeignByte(const std::string& text) {
+  using Utf8 = boost::locale::utf::utf_traits<char>;
+  for (auto character = text.begin(); character != text.end();) {
+    const auto begin = character;
+    const boost::locale::utf::code_point code = Utf8::decode(character, text.end());
+    const bool is_control = (code < 0x20 && code != '\t' && code != '\n' && code != '\r') || code == 0x7F;
+    if (code == boost::locale::utf::illegal || code == boost::locale::utf::incomplete || is_control) {
+      return static_cast<std::size_t>(begin - text.begin());
+    }
+  }
+  return std::string::npos;
+}
+
 }  // namespace
 
 XmlFile::XmlFile(const std::string& path) : path_(path), text_(readText(path)) {
   for (std::size_t at = text_.find('\n'); at != std::string::npos; at = text_.find('\n', at + 1)) {
     line_ends_.push_back(static_cast<std::ptrdiff_t>(at));
+  }
+  if (const std::size_t foreign = findForeignByte(text_); foreign != std::string::npos) {
+    failAt(path_, calcLine(static_cast<std::ptrdiff_t>(foreign)),
+           "has a byte in this line that is not text in UTF-8; save the file as UTF-8");
   }
   const pugi::xml_parse_result result =
       document_.load_buffer(text_.data(), text_.size(), pugi::parse_default, pugi::encoding_utf8);

@@ -255,6 +255,9 @@ class Import(unittest.TestCase):
         line, message = self.refuse(ARM.replace("</robot>", "</robo>"))
         self.assertEqual(line, ARM.rstrip().count("\n") + 1, message)
         self.assertIn("is not XML", message)
+        line, message = self.refuse(ARM.replace('<link name="hand"', '<link name="ha\x01nd"', 1))
+        self.assertEqual(line, self.find_line(ARM, '<link name="hand"'), message)
+        self.assertIn("not text in UTF-8", message)
         self.assertIn("has no joint 'elbow'", self.refuse(ARM, "--joints", "elbow")[1])
 
     def test_an_inertia_that_no_body_has_is_named_and_taken_as_it_is(self):
