@@ -64,7 +64,9 @@ class Supposing {
                                    stated);
     const VectorXd features = found_.features + reader_.getExtractor().extract(input_.offset);
     const PosteriorEstimate fitted =
-        sampler.sampleAsStated(features, known_, sampler.describeNoise(found_.clipped), given_, options_)
+        sampler
+            .sampleAsStated(features, known_, sampler.describeNoise(found_.clipped), given_,
+                            given_.cols() > 0 ? searchNearby(options_) : options_)
             .estimate;
     if (!fitted.fit || !fitted.fit->isSimulated()) {
       return false;
@@ -124,7 +126,9 @@ std::optional<ExperimentSpec> supposeInput(const MeasurementReader& reader, Avai
     return std::nullopt;
   }
   const SearchStage stage("what the unknown of the excitation does");
-  options.draws = std::min(options.draws, kMinPosteriorDraws);
+  options.wants_draws = [](const SimulatorPosterior&) {
+    return false;
+  };  // the best fit is all that is asked for
   Supposing supposing(reader, found, known, options);
   for (int i = 0; i < kTimes; ++i) {
     if (!supposing.improve()) {
