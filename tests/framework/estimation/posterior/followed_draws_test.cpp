@@ -14,7 +14,7 @@ using Eigen::VectorXd;
 using testing::makeVector;
 using testing::Surface;
 
-constexpr double kNoise = 0.01;
+constexpr double kSmallNoise = 0.01;
 
 /// A product that is determined, of factors that are not.
 VectorXd multiply(const VectorXd& x) {
@@ -24,7 +24,7 @@ VectorXd multiply(const VectorXd& x) {
 /// Weights of draws of the linear response are of no use here: it is off by a hundred standard deviations of
 /// the noise. The product has the noise's, its factors all that the bounds allow.
 TEST(FollowedDraws, LieOnAValleyThatBendsByFarMoreThanItIsWide) {
-  Surface surface(2, multiply, testing::makeParameters(2, 1.0, 3.0), kNoise, makeVector({2.0, 2.0}));
+  Surface surface(2, multiply, testing::makeParameters(2, 1.0, 3.0), kSmallNoise, makeVector({2.0, 2.0}));
   const Basin basin = surface.makeBasins(makeVector({0.0, 0.0})).front();
   const importance::AdaptiveDraws drawn = drawFollowed(surface.surface, basin, 400, 1);
   EXPECT_TRUE(drawn.isReliable()) << drawn.findObstacle();
@@ -37,8 +37,8 @@ TEST(FollowedDraws, LieOnAValleyThatBendsByFarMoreThanItIsWide) {
     least = drawn.draws.weights[i] > 0.0 ? std::min(least, point[1]) : least;
     most = drawn.draws.weights[i] > 0.0 ? std::max(most, point[1]) : most;
   }
-  EXPECT_NEAR(sum, 8.0, 0.2 * kNoise);
-  EXPECT_NEAR(std::sqrt(squares - sum * sum), kNoise, 0.15 * kNoise);
+  EXPECT_NEAR(sum, 8.0, 0.2 * kSmallNoise);
+  EXPECT_NEAR(std::sqrt(squares - sum * sum), kSmallNoise, 0.15 * kSmallNoise);
   EXPECT_LT(least, 1.75);  // 1.63 is where the other factor is at its bound
   EXPECT_GT(most, 2.5);    // of 2.83
 }
