@@ -77,17 +77,17 @@ MatrixXd integrateSum(double measured, double noise_stddev, double lower, double
 
 TEST(LocalWalk, ServesWherePartsOfBasinsDoNot) {
   // three times a sum of a parameter and a product, which neither logarithms nor the parameters straighten
-  constexpr double kNoise = 0.1, kLower = 0.2, kUpper = 3.0;
+  constexpr double kStddev = 0.1, kLower = 0.2, kUpper = 3.0;
   const auto response = [](const VectorXd& x) -> VectorXd {
     return makeVector({x[0] + x[1] * x[2], x[3] + x[4] * x[5], x[6] + x[7] * x[8]});
   };
-  Problem problem(3, response, testing::makeParameters(9, kLower, kUpper), kNoise);
+  Problem problem(3, response, testing::makeParameters(9, kLower, kUpper), kStddev);
   const VectorXd features = makeVector({2.5, 4.0, 6.0});
   const SimulatorPosterior posterior =
       samplePosterior(problem.simulator, problem.model, {}, features, VectorXd::Zero(9), MatrixXd(9, 0), {});
   ASSERT_TRUE(posterior.isReliable()) << posterior.message;
   for (Index k = 0; k < 3; ++k) {
-    const MatrixXd expected = integrateSum(features[k], kNoise, kLower, kUpper);
+    const MatrixXd expected = integrateSum(features[k], kStddev, kLower, kUpper);
     for (Index j = 0; j < 3; ++j) {
       EXPECT_NEAR(posterior.mean[3 * k + j], expected(j, 0), 0.3 * expected(j, 1));
       EXPECT_NEAR(posterior.stddev[3 * k + j] / expected(j, 1), 1.0, 0.25);
