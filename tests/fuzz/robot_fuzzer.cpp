@@ -32,8 +32,8 @@ const std::string& getPath() {
 robots::ImportOptions chooseOptions(std::size_t size) {
   robots::ImportOptions options;
   options.base = size % 2 == 0 ? robots::Base::kFixed : robots::Base::kFree;
-  options.stops = size % 3 == 0;
   options.from_motion = size % 5 == 0;
+  options.stops = size % 3 == 0 && !options.from_motion;  // the command refuses both
   if (size % 7 < 5) {
     options.parameters = {"inertia", "damping"};
   }

@@ -30,10 +30,12 @@ void addImport(CLI::App& app) {
   addOption(*command, "--csv", "FILE", arguments->csv,
             "Recording whose columns are called as coordinates (angles, in 'deg' too) and signals: they "
             "become the measurement and the excitation");
-  command->add_flag("--from-motion", arguments->from_motion,
-                    "The joints move as recorded, and the forces of their drives are measured (inverse "
-                    "dynamics), in place of the motion that forces cause");
-  command->add_flag("--stops", arguments->stops, "Rigid stops, without rebound, at the joints' limits");
+  CLI::Option* from_motion =
+      command->add_flag("--from-motion", arguments->from_motion,
+                        "The joints move as recorded, and the forces of their drives are measured (inverse "
+                        "dynamics), in place of the motion that forces cause");
+  command->add_flag("--stops", arguments->stops, "Rigid stops, without rebound, at the joints' limits")
+      ->excludes(from_motion);
   command->add_flag("--strict", arguments->strict, "Fail where anything is left out");
   command->callback([arguments] { importRobot(*arguments); });
 }
