@@ -39,6 +39,10 @@ constexpr double kMostOfMisfit = 0.9;
 /// Chi-square a residual that sensors and units make, missing physics rarely, and what of it is left by that
 /// which explains it.
 constexpr double kGrossMisfit = 100.0, kRestOfGross = 0.01;
+/// Whether what is left is so much that no noise is taken for it.
+constexpr bool isGross(double chi_square, double degrees) {
+  return chi_square > kGrossMisfit * degrees;
+}
 /// Of a gross misfit: where an iteration takes less, all that a search has left would not explain it. 25 of
 /// them take a fifth.
 constexpr double kCreeping = 0.01;

@@ -160,7 +160,7 @@ bool SimulatorFit::isAsStated() const {
 }
 
 bool SimulatorFit::isGross() const {
-  return chi_square > kGrossMisfit * degrees;
+  return twinmap::isGross(chi_square, degrees);
 }
 
 double SimulatorFit::getNoiseFactor() const {

@@ -1,20 +1,11 @@
 // Feeds any bytes to the reader of experiment files: they are refused with an ExperimentError, or the
 // experiment as resolved reads as itself.
-#include <cstdio>
-#include <cstdlib>
-
 #include "framework/experiment/files/experiment_file.hpp"
+#include "tests/fuzz/require.hpp"
 
 namespace {
 
 using namespace twinmap;
-
-void require(bool holds, const char* what, const std::string& text) {
-  if (!holds) {
-    std::fprintf(stderr, "%s:\n%s\n", what, text.c_str());
-    std::abort();
-  }
-}
 
 void requireSame(const std::string& text, const std::string& again) {
   require(text == again, "the resolved experiment does not check as itself", text + "\nbut as:\n" + again);

@@ -2,25 +2,17 @@
 // become an experiment that reads, and the file is written back as it was.
 #include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <fstream>
 
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/robots/experiment_text.hpp"
 #include "framework/robots/urdf/read_urdf.hpp"
 #include "framework/robots/urdf/write_urdf.hpp"
+#include "tests/fuzz/require.hpp"
 
 namespace {
 
 using namespace twinmap;
-
-void require(bool holds, const char* what, const std::string& text) {
-  if (!holds) {
-    std::fprintf(stderr, "%s:\n%s\n", what, text.c_str());
-    std::abort();
-  }
-}
 
 /// In memory, one of each process.
 const std::string& getPath() {

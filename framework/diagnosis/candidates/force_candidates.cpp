@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "framework/diagnosis/candidates/term_candidates.hpp"
-#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {
@@ -92,13 +91,6 @@ std::string makeLaw(const ForceTerm& term, const std::string& coordinate, const 
   return replaceAll(law, "{c}", coefficient);
 }
 
-void addForceLaw(ModelSpec& model, const std::string& coordinate, const std::string& force) {
-  ForceLaw<Expression> law;
-  law.coordinate = {coordinate, {}};
-  law.force = {force, {}};
-  model.system.elements.get<ForceLaw>().push_back(law);
-}
-
 TermCandidate makeForceCandidate(const ForceTerm& term, const CoordinateSizes& coordinate) {
   const std::string name = coordinate.name;
   TermCandidate candidate;
@@ -119,7 +111,7 @@ TermCandidate makeForceCandidate(const ForceTerm& term, const CoordinateSizes& c
 void addScannedForce(const ScannedTerm& scanned, const CoordinateSizes& coordinate,
                      std::vector<TermCandidate>& candidates) {
   TermCandidate candidate = makeForceCandidate(scanned.term, coordinate);
-  const std::string length = coordinate.is_angle ? "rad" : "m";
+  const std::string length = getLength(coordinate);
   candidate.own_scales = {{scanned.scale_meaning, scanned.scale_is_speed ? length + "/s" : length}};
   addScanned(candidate, scanned.first * (scanned.scale_is_speed ? coordinate.speed : coordinate.reach),
              scanned.factor, scanned.count, candidates);

@@ -10,7 +10,8 @@ namespace {
 
 using Element = Friction<Expression>;
 
-/// Friction of the model as it is written: "{v}" slides at, Fc + (Fs - Fc) exp(-(|v| / speed)^exponent).
+/// Friction of the model as expressions: the speed v at which it slides, Fc, and Fc + (Fs - Fc) exp(-(|v| /
+/// speed)^exponent).
 struct WrittenFriction {
   std::string slip, coulomb, level;
 };
@@ -45,14 +46,9 @@ void leaveRest(const std::string& share, Element& own) {
 }
 
 void addBetween(const Element& own, const std::string& force, ModelSpec& model) {
-  ForceLaw<Expression> law;
-  law.coordinate = own.coordinate;
-  law.force = {"-" + force, {}};
-  model.system.elements.get<ForceLaw>().push_back(law);
+  addForceLaw(model, own.coordinate.text, "-" + force);
   if (own.against) {
-    law.coordinate = *own.against;
-    law.force = {force, {}};
-    model.system.elements.get<ForceLaw>().push_back(law);
+    addForceLaw(model, own.against->text, force);
   }
 }
 
@@ -93,7 +89,7 @@ AddTerm makeAdd(const Relative& relative, std::size_t element) {
 void addRelative(const Relative& relative, std::size_t element, const Element& own,
                  const CoordinateSizes& sizes, std::vector<TermCandidate>& candidates) {
   const std::string place = fmt::format("friction[{}]", element);
-  const std::string length = sizes.is_angle ? "rad" : "m";
+  const std::string length = getLength(sizes);
   TermCandidate candidate;
   candidate.term = fmt::format("{}.{}", relative.kind, own.coordinate.text);
   candidate.meaning =

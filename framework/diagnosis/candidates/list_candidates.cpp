@@ -6,6 +6,7 @@
 
 #include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
+#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {
@@ -111,6 +112,17 @@ void addLimits(const TermCandidate& candidate, const Extent& extent, double firs
   const double ratio = last * extent.largest / from;
   const int steps = std::max(1, static_cast<int>(std::ceil(std::log(ratio) / std::log(factor) - 1e-9)));
   addScanned(candidate, from, std::pow(ratio, 1.0 / steps), steps + 1, candidates);
+}
+
+void addForceLaw(ModelSpec& model, const std::string& coordinate, const std::string& force) {
+  ForceLaw<Expression> law;
+  law.coordinate = {coordinate, {}};
+  law.force = {force, {}};
+  model.system.elements.get<ForceLaw>().push_back(law);
+}
+
+std::string getLength(const CoordinateSizes& coordinate) {
+  return coordinate.is_angle ? "rad" : "m";
 }
 
 std::string writeBeyond(const std::string& value, const std::string& limit) {

@@ -66,10 +66,7 @@ void addFriction(ModelSpec& model, const std::string& coordinate, const std::str
       return;
     }
   }
-  ForceLaw<Expression> law;
-  law.coordinate = {coordinate, {}};
-  law.force = {fmt::format("-{}*tanh({}_dot/{})", growth, coordinate, speed), {}};
-  model.system.elements.get<ForceLaw>().push_back(law);
+  addForceLaw(model, coordinate, fmt::format("-{}*tanh({}_dot/{})", growth, coordinate, speed));
 }
 
 TermCandidate makeLoadCandidate(const char* kind, const char* of, const CoordinateSizes& coordinate,

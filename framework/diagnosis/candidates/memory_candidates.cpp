@@ -4,21 +4,9 @@
 #include <cmath>
 
 #include "framework/diagnosis/candidates/term_candidates.hpp"
-#include "framework/experiment/model/elements/force_elements.hpp"
 
 namespace twinmap {
 namespace {
-
-void addLaw(ModelSpec& model, const std::string& coordinate, const std::string& force) {
-  ForceLaw<Expression> law;
-  law.coordinate = {coordinate, {}};
-  law.force = {force, {}};
-  model.system.elements.get<ForceLaw>().push_back(law);
-}
-
-std::string getLength(const CoordinateSizes& coordinate) {
-  return coordinate.is_angle ? "rad" : "m";
-}
 
 /// A force -c z whose state z, between -1 and 1, follows dz/dt = `rate`: "{v}" is the speed, "{z}" the state,
 /// "{s}" the displacement before it slips, "{r}" a second scale.
@@ -77,7 +65,7 @@ void addSticking(const StickingTerm& term, const CoordinateSizes& coordinate,
                                            const std::vector<std::string>& scales) {
     const std::string state = addState(model, coefficient + "_z", "0", "1");
     model.system.states.back().derivative.text = fillRate(rate, name, state, scales);
-    addLaw(model, name, "-" + coefficient + "*" + state);
+    addForceLaw(model, name, "-" + coefficient + "*" + state);
   };
   addScanned(candidate, kFirst * coordinate.reach, kFactor, kCount, candidates);
 }
@@ -110,7 +98,7 @@ void addHiddenMode(const ModelSpec& model, const CoordinateSizes& coordinate, do
         fmt::format("{0}*({0}*({1} - {2}) + 2*{3}*({4} - {5}))", omega, at, q, scales[1], speed, v);
     changed.system.states[first].derivative.text = speed;
     changed.system.states[first + 1].derivative.text = "-(" + pull + ")";
-    addLaw(changed, q, coefficient + "*" + pull);
+    addForceLaw(changed, q, coefficient + "*" + pull);
   };
   const double typical = coordinate.speed / (2.0 * M_PI * coordinate.reach);  // Hz
   addScanned(candidate, kFirst * typical, kFactor, kCount, candidates);

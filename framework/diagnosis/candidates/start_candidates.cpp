@@ -31,7 +31,7 @@ void addStart(const CoordinateSizes& coordinate, bool is_speed, std::vector<Term
   TermCandidate candidate;
   candidate.term = (is_speed ? "start_speed." : "start.") + name;
   candidate.meaning = fmt::format("it starts {} {} larger by c", is_speed ? "with a speed of" : "at", name);
-  candidate.unit = fmt::format("{}{}", coordinate.is_angle ? "rad" : "m", is_speed ? "/s" : "");
+  candidate.unit = getLength(coordinate) + (is_speed ? "/s" : "");
   candidate.size = is_speed ? coordinate.speed : coordinate.reach;
   candidate.add = [name, is_speed](ModelSpec& model, const std::string& coefficient,
                                    const std::vector<std::string>&) {

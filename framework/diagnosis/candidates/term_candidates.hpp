@@ -67,6 +67,12 @@ void addScanned(const TermCandidate& candidate, double first, double factor, int
 void addLimits(const TermCandidate& candidate, const Extent& extent, double first, double last, double factor,
                std::vector<TermCandidate>& candidates);
 
+/// Adds a force law on a coordinate to a model.
+void addForceLaw(ModelSpec& model, const std::string& coordinate, const std::string& force);
+
+/// The unit of a coordinate, "rad" or "m".
+std::string getLength(const CoordinateSizes& coordinate);
+
 /// What of a value lies beyond -limit ... limit, as an expression.
 std::string writeBeyond(const std::string& value, const std::string& limit);
 

@@ -138,34 +138,36 @@ bool isLinearFor(MisfitSurface& surface, const Basin& basin, const MatrixXd& dra
   return calcDisplacements(surface, basin, points).maxCoeff() <= kFarthest;
 }
 
-/// Of many, where no weights make the draws those of the posterior; in the parameters as they are.
-Sampling sampleFollowed(const PosteriorProblem& problem, const BasinSearch& found,
-                        const ProblemSurface& whole, const PosteriorDrawOptions& options) {
+/// In the parameters as they are, by `draw` of a surface and the basins there.
+template <class Draw>
+Sampling samplePlain(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
+                     const Draw& draw) {
   Sampling sampling;
   sampling.plain = listAll(problem);
   ProblemSurface plain(problem, sampling.plain);
   MisfitSurface& surface = plain.upd();
   sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);
-  sampling.drawn = drawFollowed(surface, sampling.landscape.basins.front(), options.draws, options.seed);
+  sampling.drawn = draw(surface, sampling.landscape.basins);
   sampling.obstacle = findObstacle(problem, surface, sampling);
   sampling.drawn.draws.points = MatrixXd(sampling.drawn.draws.points.topRows(problem.drawn));
+  connectModes(surface, sampling);
   sampling.simulations = surface.getSimulations();
   return sampling;
 }
 
-/// In the parameters as they are.
+/// Of many, where no weights make the draws those of the posterior.
+Sampling sampleFollowed(const PosteriorProblem& problem, const BasinSearch& found,
+                        const ProblemSurface& whole, const PosteriorDrawOptions& options) {
+  return samplePlain(problem, found, whole, [&](MisfitSurface& surface, const std::vector<Basin>& basins) {
+    return drawFollowed(surface, basins.front(), options.draws, options.seed);
+  });
+}
+
 Sampling sampleWalks(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
                      const PosteriorDrawOptions& options) {
-  Sampling sampling;
-  sampling.plain = listAll(problem);
-  ProblemSurface plain(problem, sampling.plain);
-  MisfitSurface& surface = plain.upd();
-  sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);
-  sampling.drawn = drawAlongWalks(surface, sampling.landscape.basins, options);
-  sampling.obstacle = findObstacle(problem, surface, sampling);
-  connectModes(surface, sampling);
-  sampling.simulations = surface.getSimulations();
-  return sampling;
+  return samplePlain(problem, found, whole, [&](MisfitSurface& surface, const std::vector<Basin>& basins) {
+    return drawAlongWalks(surface, basins, options);
+  });
 }
 
 }  // namespace

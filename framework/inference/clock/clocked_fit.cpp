@@ -148,8 +148,8 @@ ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
         break;
       }
     }
-    const bool is_gross = recorded.noise.outputs.empty() &&
-                          at.local.misfit > kGrossMisfit * static_cast<double>(at.local.residuals);
+    const bool is_gross =
+        recorded.noise.outputs.empty() && isGross(at.local.misfit, static_cast<double>(at.local.residuals));
     if (before - at.local.misfit <= (is_gross ? kCreeping : kConverged) * before) {
       break;
     }

@@ -300,7 +300,7 @@ void tryUnits(const VectorXd& measured, const ResponseLayout& layout, Index outp
 std::string explainByFault(const VectorXd& measured, const ResponseLayout& layout, double chi_square,
                            Index residuals, const MisfitOfResponse& calcMisfit,
                            const std::vector<std::string>& signals) {
-  if (!(chi_square > kGrossMisfit * static_cast<double>(residuals)) || layout.times.size() == 0) {
+  if (!isGross(chi_square, static_cast<double>(residuals)) || layout.times.size() == 0) {
     return "";
   }
   Search search(kRestOfGross * chi_square, calcMisfit);

@@ -140,7 +140,7 @@ class BasinHunt {
   /// What the best basin leaves is so much that no noise is taken for it.
   bool isGross() const {
     const LocalSurface& best = found_.basins.front().local;
-    return best.chi_square > kGrossMisfit * best.degrees;
+    return twinmap::isGross(best.chi_square, best.degrees);
   }
 
   /// Whether enough searches, and so large a share, end in the best basin, which is as wide as if the noise

@@ -25,7 +25,7 @@ StepBounds makeBounds(Index dimensions, VectorXd held) {
 
 /// Whether a search leaves a gross misfit for good.
 bool creeps(const LocalSurface& local, double before) {
-  return local.chi_square > kGrossMisfit * local.degrees && local.misfit > (1.0 - kCreeping) * before;
+  return isGross(local.chi_square, local.degrees) && local.misfit > (1.0 - kCreeping) * before;
 }
 
 /// What a Gauss-Newton step would gain of chi-square if the linear model held.
