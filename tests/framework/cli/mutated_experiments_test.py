@@ -133,7 +133,8 @@ class MutatedExperiments(FolderTestCase):
                 if given not in ([], {}):
                     self.assertTrue(is_same(given, look_up(resolved, path)), (path, given))
 
-        self.assertGreater(self.for_each(test, 0), count_turn(80))
+        # 99 of all files are accepted, 16 to 23 of a turn.
+        self.assertGreater(self.for_each(test, 0), count_turn(60))
 
     def test_what_is_accepted_checks_as_itself(self):
         def test(_file, path, result):
