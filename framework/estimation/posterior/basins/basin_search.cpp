@@ -27,8 +27,15 @@ bool isExplained(const std::vector<Basin>& basins) {
          basins.front().local.chi_square < calcChiSquareLimit(basins.front().local.degrees);
 }
 
+/// Whether even the best of some ends leaves what no noise is taken for.
+bool areGross(const std::vector<LocalSurface>& ends) {
+  return std::all_of(ends.begin(), ends.end(),
+                     [](const LocalSurface& end) { return isGross(end.chi_square, end.degrees); });
+}
+
 /// The ends of searches of more and more of the response, each from where the last one ended. A chaotic
-/// response has many minima. Its beginning has few, which lie where the next ones do.
+/// response has many minima. Its beginning has few, which lie where the next ones do, unless the model does
+/// not explain even the beginning: then the whole is next.
 std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
   const std::size_t windows = surface.countWindows();
   for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
@@ -39,6 +46,9 @@ std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts,
     starts.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
     for (std::size_t k = 0; k < ends.size(); ++k) {
       starts.col(static_cast<Index>(k)) = ends[k].at;
+    }
+    if (areGross(ends)) {
+      break;
     }
   }
   surface.setWindow(windows - 1);
