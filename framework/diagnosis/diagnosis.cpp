@@ -162,9 +162,8 @@ class Diagnoser {
       diagnosis.remainder =
           findRemainder(diagnosis.corrected, recordings_, diagnosis.after.posterior.best, shared_);
     }
-    // what explains all is not beaten by a force that may be anything
-    if (diagnosis.found > 0 && options_.accepted.empty() && !diagnosis.after.isExplained()) {
-      diagnosis.process = findBetterProcess(fits.front().experiment, diagnosis);
+    if (diagnosis.found > 0 && options_.accepted.empty()) {
+      weighProcess(fits.front().experiment, diagnosis);
     }
   }
 
@@ -182,9 +181,8 @@ class Diagnoser {
     }
   }
 
-  /// Instead of all terms.
-  std::optional<Remainder> findBetterProcess(const ExperimentSpec& without_terms,
-                                             const Diagnosis& diagnosis) const {
+  /// In the place of all terms.
+  void weighProcess(const ExperimentSpec& without_terms, Diagnosis& diagnosis) const {
     // what they explain in the end, less what their freedom has cost each step: terms may have been exchanged
     double of_terms = 0.5 * (diagnosis.before.posterior.chi_square - diagnosis.after.posterior.chi_square);
     for (std::size_t i = 0; i < diagnosis.found; ++i) {
@@ -193,7 +191,10 @@ class Diagnoser {
     }
     std::optional<Remainder> process =
         findRemainder(without_terms, recordings_, diagnosis.before.posterior.best, shared_);
-    return process && process->log_evidence > of_terms + kTiedEvidence ? process : std::nullopt;
+    if (process && process->log_evidence > of_terms - kTiedEvidence) {
+      diagnosis.process_ties = process->log_evidence < of_terms + kTiedEvidence;
+      diagnosis.process = std::move(process);
+    }
   }
 
   const RecordedFeatures &recordings_, &coloured_;

@@ -48,9 +48,10 @@ struct Diagnosis {
   ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;
-  /// A process in the place of all terms that were found: where these leave something unexplained and it has
-  /// more evidence than they have, as the random force of wind or of a drive's chatter would.
+  /// A process in the place of all terms that were found, where it has more evidence than they have, as the
+  /// random force of wind or of a drive's chatter would, or ties with them.
   std::optional<Remainder> process;
+  bool process_ties = false;  ///< whether the recordings do not tell it from the terms (kTiedEvidence)
   /// Whether `after` counts the colours that the noise of recordings has, which explain all where no term
   /// does.
   bool is_coloured = false;
@@ -61,7 +62,7 @@ struct Diagnosis {
   std::vector<std::string> listAtBounds() const;
 
   /// Whether something is left unexplained, or a random force explains more than the terms that were found.
-  bool isIncomplete() const { return !after.isExplained() || process; }
+  bool isIncomplete() const { return !after.isExplained() || (process && !process_ties); }
   /// "model_incomplete" where it is, "noise_coloured" where that explains all. "unreliable" where the terms
   /// explain all, but no posterior with them is to be believed; else "ok".
   const char* getStatus() const;

@@ -85,10 +85,9 @@ void addTied(const Rivals& rivals, std::size_t chosen, const std::string& term, 
 }  // namespace
 
 Exchange exchangeTerms(const ExperimentSpec& without_terms, const RecordedFeatures& recordings, Index p,
-                       const DiagnosisOptions& options, CurrentFit& fit) {
+                       const DiagnosisOptions& options, std::size_t count, CurrentFit& fit) {
   Exchange exchange;
-  const std::size_t earlier = fit.terms.size() - 1;
-  for (std::size_t tried = 0, at = 0; tried < earlier; ++tried) {
+  for (std::size_t tried = 0, at = 0; tried < count; ++tried) {
     const std::optional<Rivals> rivals = findRivals(without_terms, recordings, p, options, fit, at);
     if (!rivals) {
       ++at;

@@ -16,10 +16,10 @@ struct Exchange {
 
 /// Exchanges terms that were taken before others were known, and stand for some of what those explain: a term
 /// is taken out, all candidates are tested beside those that are left, and the best one is put in where it
-/// has clearly more evidence (kTiedEvidence) than the one that was there and explains no less. The last term
-/// stays where it is. p: parameters of the machine before any term. Cost:
-/// for each term a fit without it, the scores of all candidates, and some four to seven fits.
+/// has clearly more evidence (kTiedEvidence) than the one that was there and explains no less. `count`: of
+/// the first terms, all but one that was just chosen beside the others. p: parameters of the machine before
+/// any term. Cost: for each term a fit without it, the scores of all candidates, and some four to seven fits.
 Exchange exchangeTerms(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
-                       Eigen::Index p, const DiagnosisOptions& options, CurrentFit& fit);
+                       Eigen::Index p, const DiagnosisOptions& options, std::size_t count, CurrentFit& fit);
 
 }  // namespace twinmap

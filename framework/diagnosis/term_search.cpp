@@ -167,7 +167,8 @@ void TermSearch::takeFirst(const CurrentFit& current, const std::vector<RankedTe
   Exchange exchange;
   if (!is_given) {
     step.dropped = dropSuperfluous(fits_.front().experiment, recordings_, next);
-    exchange = exchangeTerms(fits_.front().experiment, recordings_, shared_, options_, next);
+    exchange =
+        exchangeTerms(fits_.front().experiment, recordings_, shared_, options_, next.terms.size() - 1, next);
     step.rivals = exchange.rivals;
   }
   fits_.push_back(std::move(next));
@@ -196,8 +197,12 @@ void TermSearch::takePair(const FittedPair& pair, DiagnosisStep& step) {
   step.ranked.insert(step.ranked.begin(), first);
   step.partner = pair.second;
   step.log_evidence = pair.log_evidence;
-  fits_.push_back(pair.fit);
-  alternatives_.emplace_back();
+  CurrentFit next = pair.fit;
+  Exchange exchange =
+      exchangeTerms(fits_.front().experiment, recordings_, shared_, options_, next.terms.size(), next);
+  step.rivals = exchange.rivals;
+  fits_.push_back(std::move(next));
+  alternatives_.push_back(std::move(exchange.alternatives));
 }
 
 /// Two terms that are missing together, where the best single one, if there is one, leaves something

@@ -9,7 +9,8 @@
 // these, how many name the missing term when both tests are diagnosed together and no longer those that it
 // was tied with ("apart"), and how many name it alone. Without terms: nothing missing, then each candidate
 // that is visible at the centre of the box. "process.x": a random force on x, named where the diagnosis says
-// so in the place of all terms, or of what remains.
+// so in the place of all terms, or of what remains. "coulomb.x+delay.F": both are missing; "tied": both are
+// named.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -138,6 +139,27 @@ class Study {
                        [&](const TermFinding& one) { return one.candidate.term == term; });
   }
 
+  /// Anywhere: as found, as tied with what was found, or as its rival.
+  static bool namesAnywhere(const Diagnosis& diagnosis, const std::string& term) {
+    const auto is_term = [&](const TermFinding& one) { return one.candidate.term == term; };
+    const auto names = [&](const DiagnosisStep& step) {
+      const auto tied = step.ranked.begin() + static_cast<long>(step.found ? step.tied : 0);
+      return std::any_of(step.ranked.begin(), tied, is_term) || (step.partner && is_term(*step.partner)) ||
+             std::any_of(step.rivals.begin(), step.rivals.end(),
+                         [&](const TermRival& one) { return one.rival == term; });
+    };
+    return std::any_of(diagnosis.steps.begin(), diagnosis.steps.end(), names);
+  }
+
+  static bool names(const Diagnosis& diagnosis, const std::string& term) {
+    const std::size_t plus = term.find('+');
+    if (plus != std::string::npos) {
+      return namesAnywhere(diagnosis, term.substr(0, plus)) &&
+             namesAnywhere(diagnosis, term.substr(plus + 1));
+    }
+    return namesAmongTied(diagnosis, term) || (isProcess(term) && namesProcess(diagnosis, term));
+  }
+
   static bool namesProcess(const Diagnosis& diagnosis, const std::string& term) {
     const std::string what = "a force on " + term.substr(term.find('.') + 1);
     const auto names = [&](const std::optional<Remainder>& one) {
@@ -155,13 +177,12 @@ class Study {
       ++tally.nothing;
       ++tally.found["-"];
     } else {
-      const DiagnosisStep& step = diagnosis.steps.front();
-      const std::string& first = step.ranked.front().candidate.term;
-      ++tally.found[first];
+      const std::string& first = diagnosis.steps.front().ranked.front().candidate.term;
+      const bool is_pair = term.find('+') != std::string::npos;
+      ++tally.found[is_pair ? fmt::format("{}", fmt::join(diagnosis.listTerms(), "+")) : first];
       tally.first += first == term ? 1 : 0;
     }
-    tally.tied +=
-        namesAmongTied(diagnosis, term) || (isProcess(term) && namesProcess(diagnosis, term)) ? 1 : 0;
+    tally.tied += names(diagnosis, term) ? 1 : 0;
     if (before.isReliable()) {
       compare({before.mean.head(shared_), before.stddev.head(shared_), before.draws.topRows(shared_),
                before.weights},

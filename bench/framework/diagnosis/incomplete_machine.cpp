@@ -22,6 +22,9 @@ using Eigen::VectorXd;
 
 namespace {
 
+/// Added to a test's number, for what is drawn of the second of two terms.
+constexpr int kSecondTerm = 500;
+
 /// Whether a term of this size cannot be told from another, by the linear model.
 bool isAlike(const ScoredCandidates& scored, std::size_t chosen, double size) {
   constexpr double kTold = 2.0 * kTiedEvidence;  // of chi-square
@@ -37,8 +40,8 @@ bool isAlike(const ScoredCandidates& scored, std::size_t chosen, double size) {
   return false;
 }
 
-/// A term at one of the scales that can be seen.
-std::size_t choose(const ScoredCandidates& scored, const std::string& term) {
+/// A term at one of the scales that can be seen, if one can.
+std::optional<std::size_t> choose(const ScoredCandidates& scored, const std::string& term) {
   std::vector<std::size_t> scales;
   for (std::size_t i = 0; i < scored.candidates.size(); ++i) {
     if (scored.candidates[i].term == term && scored.scores[i].visible) {
@@ -46,7 +49,7 @@ std::size_t choose(const ScoredCandidates& scored, const std::string& term) {
     }
   }
   if (scales.empty()) {
-    throw std::runtime_error(term + " is not visible");
+    return std::nullopt;
   }
   return scales[scales.size() / 2];
 }
@@ -79,33 +82,52 @@ std::vector<std::string> MachineMaker::listTerms() const {
 }
 
 std::optional<IncompleteMachine> MachineMaker::make(const std::string& term, int test) const {
-  const VectorXd point = drawPoint(test);
-  if (term == "none") {
-    return IncompleteMachine{model_, point};
+  IncompleteMachine machine{model_, drawPoint(test)};
+  const std::size_t plus = term.find('+');
+  const std::string second = plus == std::string::npos ? "none" : term.substr(plus + 1);
+  if (!addMissing(term.substr(0, plus), test, test, machine) ||
+      !addMissing(second, test, test + kSecondTerm, machine)) {
+    return {};
   }
+  return machine;
+}
+
+/// Adds a term whose size and scales are drawn for `drawn`; false where it does nothing.
+bool MachineMaker::addMissing(const std::string& term, int test, int drawn,
+                              IncompleteMachine& machine) const {
+  if (term == "none") {
+    return true;
+  }
+  const VectorXd point = drawPoint(test);
   ScoredCandidates scored;
   TermCandidate missing;
-  std::size_t chosen = 0;
+  std::optional<std::size_t> chosen;
   if (isProcess(term)) {
-    missing = makeGust(term.substr(term.find('.') + 1), test);
+    missing = makeGust(term.substr(term.find('.') + 1), drawn);
   } else {
     scored = score(point);
     chosen = choose(scored, term);
-    missing = scored.candidates[chosen];
+    if (!chosen) {
+      return false;
+    }
+    missing = scored.candidates[*chosen];
   }
   VectorXd added = VectorXd::Zero(1 + static_cast<Index>(missing.own_scales.size()));
   for (Index i = 1; i < added.size(); ++i) {
     const OwnScale& scale = missing.own_scales[static_cast<std::size_t>(i) - 1];
-    const double factor = std::exp(drawUniform(test, 100 + i) - 0.5);
+    const double factor = std::exp(drawUniform(drawn, 100 + i) - 0.5);
     added[i] = scale.value * std::clamp(factor, 1.0 / scale.reach, scale.reach);
   }
-  added[0] = drawSize(addTerm(model_, missing, missing.size).experiment, point, added, test);
+  added[0] = drawSize(addTerm(model_, missing, missing.size).experiment, point, added, drawn);
   if (added[0] == 0.0) {
-    return {};
+    return false;
   }
-  return IncompleteMachine{addTerm(model_, missing, std::max(missing.size, 2.0 * added[0])).experiment,
-                           insertAdded(point, shared_, added),
-                           !isProcess(term) && isAlike(scored, chosen, added[0])};
+  const auto parameters = static_cast<Index>(machine.experiment.model.parameters.size());
+  machine.experiment =
+      addTerm(machine.experiment, missing, std::max(missing.size, 2.0 * added[0])).experiment;
+  machine.point = insertAdded(machine.point, parameters, added);
+  machine.is_alike = machine.is_alike || (chosen && isAlike(scored, *chosen, added[0]));
+  return true;
 }
 
 std::optional<VectorXd> MachineMaker::measure(const ExperimentSpec& machine, const VectorXd& point, int test,

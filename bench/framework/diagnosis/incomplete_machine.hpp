@@ -38,9 +38,8 @@ class MachineMaker {
   /// random force on it.
   std::vector<std::string> listTerms() const;
 
-  /// The machine number `test` with a term of such a size that chi-square is between the ratios; the model
-  /// itself for "none". None where the
-  /// term does nothing there.
+  /// The machine number `test` with a term, or two ("coulomb.x+delay.F"), each of such a size that chi-square
+  /// is between the ratios with it alone; the model itself for "none". None where a term does nothing there.
   std::optional<IncompleteMachine> make(const std::string& term, int test) const;
 
   /// The features of a machine, with noise; none where it cannot be simulated.
@@ -53,6 +52,7 @@ class MachineMaker {
   Eigen::VectorXd drawPoint(int test) const;
   ScoredCandidates score(const Eigen::VectorXd& point) const;
   TermCandidate makeGust(const std::string& coordinate, int test) const;
+  bool addMissing(const std::string& term, int test, int drawn, IncompleteMachine& machine) const;
   double drawSize(const ExperimentSpec& machine, const Eigen::VectorXd& point, const Eigen::VectorXd& added,
                   int test) const;
 

@@ -154,6 +154,7 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
   }
   if (diagnosis.process) {
     json["process"] = makeRemainderJson(*diagnosis.process, parameters);
+    json["process"]["ties"] = diagnosis.process_ties;
   }
   for (const DiagnosisStep& step : diagnosis.steps) {
     json["steps"].push_back(makeStepJson(step, parameters));

@@ -127,8 +127,13 @@ std::string describeRemainder(const Diagnosis& diagnosis) {
 }
 
 std::string describeProcess(const Diagnosis& diagnosis) {
-  return "A random process explains more than all terms found: it is as " + describeSize(*diagnosis.process) +
-         ". Wind, ground motion or the chatter of a drive are such." +
+  return fmt::format(
+             "A random process explains {}: it is as {}. Wind, ground motion or the chatter of a drive are "
+             "such.",
+             diagnosis.process_ties
+                 ? "as much as all terms found, and these recordings do not tell them apart"
+                 : "more than all terms found",
+             describeSize(*diagnosis.process)) +
          describeOutside(*diagnosis.process, diagnosis.corrected.model.parameters);
 }
 

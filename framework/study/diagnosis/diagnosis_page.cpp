@@ -177,11 +177,13 @@ std::string makeTable(const std::string& id, const std::string& caption, const T
 }
 
 std::string describeMissing(const Diagnosis& diagnosis) {
-  if (diagnosis.process) {
+  if (diagnosis.process && !diagnosis.process_ties) {
     return "Missing: " + diagnosis.process->what + ", at random";
   }
-  return diagnosis.found > 0 ? fmt::format("Missing: {}", fmt::join(diagnosis.listTerms(), ", "))
-                             : "No term is found missing";
+  return diagnosis.found > 0
+             ? fmt::format("Missing: {}{}", fmt::join(diagnosis.listTerms(), ", "),
+                           diagnosis.process ? ", or " + diagnosis.process->what + ", at random" : "")
+             : "No term is found missing";
 }
 
 Section makeVerdict(const Diagnosis& diagnosis, const ExperimentSpec& experiment,

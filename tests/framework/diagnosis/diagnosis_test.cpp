@@ -160,6 +160,43 @@ TEST(Diagnosis, NamesRivalsOfATermThatMayStandInForOthers) {
   EXPECT_TRUE(named.count("coulomb.x"));
 }
 
+// Drag, and a drive that follows its command late: found together, each may be another of its kind.
+TEST(Diagnosis, NamesRivalsOfTwoTermsFoundTogether) {
+  const Diagnosis diagnosis = diagnoseCart({measureCart(
+      "f - k3*x^3 - 4*x_dot*abs(x_dot)", 0, {"system.states={f: {derivative: (F - f)/0.012, unit: N}}"})});
+  ASSERT_TRUE(diagnosis.steps.front().partner.has_value());
+  std::set<std::string> named = nameTerms(diagnosis);
+  for (const TermRival& rival : diagnosis.steps.front().rivals) {
+    named.insert(rival.rival);
+  }
+  EXPECT_TRUE(named.count("drag.x"));
+  EXPECT_TRUE(named.count("lag.F"));
+  EXPECT_GT(named.size(), 2U);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_NEAR(diagnosis.averaged.mean[i], kTrueCart[i], 4.0 * diagnosis.averaged.stddev[i]);
+  }
+}
+
+// A flexible term explains what a random force of this size leaves; a force that may be anything needs less
+// freedom where it is fast, and as much where it is slow.
+TEST(Diagnosis, WeighsARandomForceAgainstAllTerms) {
+  const Diagnosis fast =
+      diagnoseCart({measureCart("F - k3*x^3 + 0.006*(sin(11*t) + sin(17.3*t + 1) + sin(23.1*t + 2))")});
+  EXPECT_TRUE(fast.after.isExplained());
+  ASSERT_TRUE(fast.process.has_value());
+  EXPECT_EQ(fast.process->what, "a force on x");
+  EXPECT_FALSE(fast.process_ties);
+  EXPECT_STREQ(fast.getStatus(), "model_incomplete");
+
+  const Diagnosis slow =
+      diagnoseCart({measureCart("F - k3*x^3 + 0.006*(sin(5*t) + sin(7.3*t + 1) + sin(9.1*t + 2))")});
+  ASSERT_TRUE(slow.process.has_value());
+  EXPECT_TRUE(slow.process_ties);
+  EXPECT_STREQ(slow.getStatus(), "ok");
+  EXPECT_NE(makeDiagnosisTable(slow, "m.csv").find("A random process explains as much as all terms found"),
+            std::string::npos);
+}
+
 constexpr const char* kSwept = "F - k3*x^3 + 0.05*sin(9*t^2)";
 
 TEST(Diagnosis, TestsTermsOfTheFile) {
