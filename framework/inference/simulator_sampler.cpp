@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/base/log/search_stage.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
@@ -117,6 +118,7 @@ SampledMeasurement SimulatorSampler::explainByNoise(SampledMeasurement sampled, 
   sparing.wants_draws = [&](const SimulatorPosterior& found) {
     return explains(*makeEstimate(makeTrial(features, known), found).fit, fit.residual.size());
   };
+  const SearchStage stage = SearchStage::supposing("does another noise explain it");
   for (const NoiseHypothesis& noise : others) {
     SampledMeasurement other = sampleUnder(noise, features, known, fit.best, sparing);
     if (other.estimate.isReliable()) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -21,6 +22,10 @@ struct Board {
 
   /// With the mutex held.
   bool isOwn() const { return !state.stages.empty() && owner == std::this_thread::get_id(); }
+  bool takesBest() const {
+    return isOwn() && std::none_of(state.stages.begin(), state.stages.end(),
+                                   [](const SearchState::Stage& stage) { return stage.supposes; });
+  }
 };
 
 Board& getBoard() {
@@ -75,7 +80,13 @@ std::string describeBest(const SearchState& state) {
   return fmt::format("{}", fmt::join(phrases, ", "));
 }
 
-SearchStage::SearchStage(std::string name, int total) {
+SearchStage::SearchStage(std::string name, int total) : SearchStage(std::move(name), total, false) {}
+
+SearchStage SearchStage::supposing(std::string name) {
+  return SearchStage(std::move(name), 0, true);
+}
+
+SearchStage::SearchStage(std::string name, int total, bool supposes) {
   Board& board = getBoard();
   const std::lock_guard lock(board.mutex);
   if (board.state.stages.empty()) {
@@ -85,7 +96,7 @@ SearchStage::SearchStage(std::string name, int total) {
   } else if (!board.isOwn()) {
     return;
   }
-  board.state.stages.push_back({std::move(name), 0, total});
+  board.state.stages.push_back({std::move(name), 0, total, supposes});
   depth_ = board.state.stages.size();
 }
 
@@ -121,7 +132,7 @@ void SearchStage::advance() {
 void beginBest(std::vector<std::string> names) {
   Board& board = getBoard();
   const std::lock_guard lock(board.mutex);
-  if (board.isOwn()) {
+  if (board.takesBest()) {
     board.state.best.reset();
     board.names = std::move(names);
   }
@@ -131,7 +142,7 @@ void noteBest(double chi_square, double degrees, std::vector<double> values) {
   Board& board = getBoard();
   const std::lock_guard lock(board.mutex);
   const std::optional<BestFit>& best = board.state.best;
-  if (board.isOwn() && values.size() == board.names.size() && (!best || chi_square < best->chi_square)) {
+  if (board.takesBest() && values.size() == board.names.size() && (!best || chi_square < best->chi_square)) {
     board.state.best = {chi_square, degrees, board.names, std::move(values)};
   }
 }

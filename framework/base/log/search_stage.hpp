@@ -18,6 +18,7 @@ struct SearchState {
   struct Stage {
     std::string name;
     int done = 0, total = 0;  ///< parts of it; total: 0: not in parts
+    bool supposes = false;    ///< that the recording is another than it was said to be
   };
   std::vector<Stage> stages;  ///< the outermost first
   long simulations = 0;       ///< since the first stage began
@@ -40,6 +41,9 @@ std::string describeBest(const SearchState& state);
 class SearchStage {
  public:
   explicit SearchStage(std::string name, int total = 0);
+  /// Supposes what was not stated, another noise or clock: its chi-square does not compare with the stated
+  /// one's, so that within it the best fit stays what it was.
+  static SearchStage supposing(std::string name);
   SearchStage(const SearchStage&) = delete;
   SearchStage& operator=(const SearchStage&) = delete;
   ~SearchStage();
@@ -50,6 +54,8 @@ class SearchStage {
   void advance();
 
  private:
+  SearchStage(std::string name, int total, bool supposes);
+
   std::size_t depth_ = 0;  // 0: not told of
 };
 

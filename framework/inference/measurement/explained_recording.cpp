@@ -49,7 +49,7 @@ std::optional<ClockedMeasurement> findClock(const RecordingSetup& setup, const A
       static_cast<Index>(found.available.size()) < kFewestTested) {
     return std::nullopt;
   }
-  const SearchStage stage("does a fault of the clock explain it");
+  const SearchStage stage = SearchStage::supposing("does a fault of the clock explain it");
   return findClockFaults({experiment, setup.reader->getLayout(), found.features, known,
                           setup.simulator->describeNoise(found.clipped)},
                          fit->best, options);
@@ -193,7 +193,7 @@ class Explaining {
     if (!getFit().isSimulated() || getFit().isPlausible()) {
       return "";
     }
-    const SearchStage stage("does a fault of the recording explain it");
+    const SearchStage stage = SearchStage::supposing("does a fault of the recording explain it");
     const AvailableFeatures& found = explained_.found;
     const auto calcMisfit = [&](const VectorXd& corrected) {
       return getSimulator().findLeastChiSquare(getSimulator().getExtractor().extract(corrected),

@@ -26,7 +26,7 @@ std::string explainByGrams(const MeasurementReader& reader, const SimulatorRefin
   if (all.size() > 1) {
     tried.push_back(all);
   }
-  const SearchStage stage("are masses in g");
+  const SearchStage stage = SearchStage::supposing("are masses in g");
   for (const std::vector<std::size_t>& heavy : tried) {
     ExperimentSpec light = experiment;
     std::string names;

@@ -125,7 +125,7 @@ std::optional<ExperimentSpec> supposeInput(const MeasurementReader& reader, Avai
   if (!hasUnknownExcitation(reader.getExperiment().model) || !areSamples(reader.getExperiment().features)) {
     return std::nullopt;
   }
-  const SearchStage stage("what the unknown of the excitation does");
+  const SearchStage stage = SearchStage::supposing("what the unknown of the excitation does");
   options.wants_draws = [](const SimulatorPosterior&) {
     return false;
   };  // the best fit is all that is asked for

@@ -54,7 +54,7 @@ std::string explainByBounds(const MeasurementReader& reader, const SimulatorRefi
   if (fit.beyond.empty() || !fit.isGross() || !simulator.samplesFast()) {
     return "";
   }
-  const SearchStage stage("do values beyond the bounds explain it");
+  const SearchStage stage = SearchStage::supposing("do values beyond the bounds explain it");
   const ExperimentSpec wide = widenBounds(reader.getExperiment(), fit.beyond);
   const SimulatorRefiner refiner(wide, reader.getLayout(), simulator.getSimulator().clone(), found.stated);
   const LeastMisfit best = refiner.findLeastMisfit(found.features, known, fit.best);

@@ -35,6 +35,20 @@ TEST(SearchStage, EndsWithItsScope) {
   EXPECT_TRUE(getSearchState().stages.empty());
 }
 
+TEST(SearchStage, KeepsTheBestFitWhileAnotherNoiseOrClockIsSupposed) {
+  const SearchStage stage("infer");
+  beginBest({"k"});
+  noteBest(1e8, 790.0, {2.0});
+  {
+    const SearchStage other = SearchStage::supposing("does another noise explain it");
+    beginBest({"k", "scale"});
+    noteBest(800.0, 789.0, {3.0, 1e5});
+    EXPECT_EQ(describeBest(getSearchState()), "k = 2");
+  }
+  noteBest(1e7, 790.0, {2.5});
+  EXPECT_EQ(describeBest(getSearchState()), "k = 2.5");
+}
+
 TEST(SearchStage, ForgetsTheBestFitOfAnEarlierSearch) {
   const SearchStage stage("search");
   beginBest({"k"});
