@@ -52,7 +52,7 @@ DiagnosedRecordings explainSensors(const JointInferrer& inferrer, const Experime
                                    const std::vector<Recording>& recordings,
                                    const std::vector<KnownValue>& known) {
   DiagnosedRecordings explained{readRecordings(experiment, recordings, known), {}, {}};
-  std::vector<ExplainedRecording> alone = inferrer.explainAlone(recordings);
+  std::vector<ExplainedRecording> alone = inferrer.explainAlone(recordings, JointInferrer::Misfits::kStarts);
   for (std::size_t k = 0; k < alone.size(); ++k) {
     explained.alone.push_back(
         {recordings[k].label, std::move(alone[k].inferred), std::move(alone[k].posterior)});

@@ -256,7 +256,8 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
   return *found;
 }
 
-ExplainedRecording JointInferrer::explain(const Recording& recording) const {
+ExplainedRecording JointInferrer::explain(const Recording& recording,
+                                          const SimulatorPosteriorOptions& options) const {
   const Member& member = find(recording.trial);
   std::optional<RecordingSetup> setup = followRecording(*member.reader, *recording.table, recording.start);
   if (!setup) {  // with a simulator of its own, for a thread of its own
@@ -265,10 +266,16 @@ ExplainedRecording JointInferrer::explain(const Recording& recording) const {
         member.reader, std::make_shared<const SimulatorRefiner>(experiment, member.reader->getLayout(),
                                                                 member.simulator->getSimulator().clone())};
   }
-  return explainRecording(*setup, *recording.table, recording.start, member.known, options_);
+  return explainRecording(*setup, *recording.table, recording.start, member.known, options);
 }
 
-std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Recording>& recordings) const {
+std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Recording>& recordings,
+                                                            Misfits misfits) const {
+  SimulatorPosteriorOptions options = options_;
+  if (misfits == Misfits::kStarts) {
+    options.search.settles = true;
+    options.search.max_batches = 2;
+  }
   const int threads = countThreads(), count = static_cast<int>(recordings.size());
   const bool side_by_side =
       count >= threads || static_cast<Index>(members_.front().simulator->getUnknown().size()) > kManyUnknown;
@@ -276,7 +283,7 @@ std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Re
   std::atomic<int> done{0};
   std::vector<ExplainedRecording> alone(recordings.size());
   runTasks(side_by_side ? threads : 1, recordings.size(), [&](std::size_t k) {
-    alone[k] = explain(recordings[k]);
+    alone[k] = explain(recordings[k], options);
     stage.show(++done, count);
   });
   return alone;

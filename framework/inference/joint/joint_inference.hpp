@@ -93,8 +93,11 @@ class JointInferrer {
   /// of each recording and joint draw.
   JointInference infer(const std::vector<Recording>& recordings) const;
 
+  /// What becomes of a fit that noise does not explain: it is the answer, or where a further search begins.
+  enum class Misfits { kAnswers, kStarts };
   /// Each alone (explainRecording).
-  std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings) const;
+  std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings,
+                                               Misfits misfits = Misfits::kAnswers) const;
 
  private:
   JointInferrer(std::vector<TrialExperiment> trials, const std::vector<KnownValue>& known,
@@ -108,7 +111,7 @@ class JointInferrer {
   };
 
   const Member& find(const std::string& trial) const;
-  ExplainedRecording explain(const Recording& recording) const;
+  ExplainedRecording explain(const Recording& recording, const SimulatorPosteriorOptions& options) const;
   /// Of recordings that the model does not explain, or that disagree: of others it would take long.
   static void nameNoise(std::vector<ExplainedRecording>& alone, JointInference& inferred);
   /// Each with the faults that explain it alone. The recordings must outlive it.
