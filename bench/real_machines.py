@@ -10,6 +10,7 @@ there already is taken.
 import argparse
 import json
 import os
+import re
 import subprocess
 import tempfile
 from collections import Counter
@@ -45,6 +46,19 @@ class Runner:
             print(f"{self.folder.name}: {name} in {seconds:.0f} s", flush=True)
         return json.loads(kept.read_text())
 
+    def look(self, recording):
+        """What look prints of the columns that the model reads."""
+        model = yaml.safe_load((self.folder / "model.yaml").read_text())
+        measurement = model.get("measurement", {})
+        options = ["--rate", str(measurement["sample_rate"])] if "sample_rate" in measurement else []
+        options += ["--time", measurement["time"]] if "time" in measurement else []
+        command = [self.twinmap, "look", recording, *options]
+        head, columns = subprocess.run(command, cwd=self.folder, capture_output=True, text=True).stdout.split("\n\n", 1)
+        used = (self.folder / "model.yaml").read_text()
+        lines = columns.splitlines()
+        read = [line for line in lines[1:] if line and re.search(rf"\b{re.escape(line.split()[0])}\b", used)]
+        return "\n".join(line.rstrip() for line in [*head.splitlines(), "", lines[0], *read])
+
 
 def repeat(option, values):
     return [part for value in values for part in (option, value)]
@@ -54,6 +68,7 @@ def measure(runner, protocol):
     recording, windows = protocol["recording"], protocol["windows"]
     starts, against = repeat("--start", windows["fit"]), repeat("--against-start", windows["predict"])
     result = {
+        "look": runner.look(recording),
         "alone": [
             runner.call(f"alone_{start}", "infer", "model.yaml", recording, "--start", start)
             for start in windows["fit"] + windows["predict"]
@@ -158,6 +173,7 @@ def make_page(name, protocol, result):
     windows = protocol["windows"]
     text = f"# {protocol['source']}\n\nWritten by `bench/real_machines.py` from [its protocol](../../../bench/real/{name}/protocol.yaml). "
     text += f"Fitted: windows from {', '.join(map(str, windows['fit']))} s. Predicted: from {', '.join(map(str, windows['predict']))} s. {protocol['chosen'].strip()}\n\n"
+    text += f"What `look` says of it:\n\n```\n{result['look']}\n```\n\n"
     text += describe_alone(result["alone"])
     text += f"- Those fitted together: `{', '.join(result['together'].get('statuses', ['no answer']))}`. {result['together']['cpu']:.0f} s.\n"
     text += describe_diagnosis(result["diagnosis"]) + "\n" + make_parameters(result, protocol)

@@ -10,6 +10,7 @@
 #include "framework/base/log/search_stage.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/term_search.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/joint/joint_starts.hpp"
@@ -58,6 +59,16 @@ AveragedEstimate mix(const std::vector<SimulatorPosterior>& posteriors, const st
   mixed.mean = importance::calcMean({mixed.draws, mixed.weights});
   mixed.stddev = importance::calcCovariance({mixed.draws, mixed.weights}).diagonal().cwiseSqrt();
   return mixed;
+}
+
+/// From a fit that was found, which need not be confirmed where it explains little.
+SimulatorPosteriorOptions searchFrom(bool confirms, const SimulatorPosteriorOptions& options) {
+  SimulatorPosteriorOptions nearby = searchNearby(options);
+  if (!confirms) {
+    nearby.search.scouts = 0;
+    nearby.search.max_batches = 0;
+  }
+  return nearby;
 }
 
 /// One diagnosis on its way.
@@ -116,7 +127,7 @@ class Diagnoser {
   void average(const TermSearch& search, Diagnosis& diagnosis) const {
     std::vector<SimulatorPosterior> posteriors{diagnosis.after.posterior};
     std::vector<double> evidence{1.0};
-    SimulatorPosteriorOptions options = searchNearby(options_.posterior);
+    SimulatorPosteriorOptions options = searchFrom(diagnosis.after.isExplained(), options_.posterior);
     options.spares_misfit = true;
     const std::vector<AlternativeFit> none;
     for (const AlternativeFit& other :
@@ -143,7 +154,8 @@ class Diagnoser {
     diagnosis.after = diagnosis.before;
     while (diagnosis.found > 0) {
       const CurrentFit& last = fits[diagnosis.found];
-      diagnosis.after = explain(last.experiment, recordings_, last.point, searchNearby(options_.posterior));
+      diagnosis.after = explain(last.experiment, recordings_, last.point,
+                                searchFrom(!isGross(last.chi_square, last.degrees), options_.posterior));
       DiagnosisStep& step = diagnosis.steps[diagnosis.found - 1];
       if (!options_.accepted.empty() || diagnosis.after.isExplained() || holdsCautiously(step)) {
         break;

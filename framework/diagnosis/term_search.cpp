@@ -131,8 +131,13 @@ void TermSearch::fitAgain(const CurrentFit& current, const ScoredCandidates& sco
   const auto all = static_cast<Index>(current.experiment.model.parameters.size());
   near.point.head(all) = best.head(all);
   near.point.tail(current.point.size() - all) = best.tail(current.point.size() - all);
-  const ScoredCandidates again =
-      scoreCandidates(current.experiment, recordings_, near.point, options_.candidates);
+  std::optional<ScoredCandidates> scored_again;
+  try {
+    scored_again = scoreCandidates(current.experiment, recordings_, near.point, options_.candidates);
+  } catch (const std::runtime_error&) {
+    return;  // without the term, the model may not be simulated there
+  }
+  const ScoredCandidates& again = *scored_again;
   std::vector<RankedTerm> there = rankTerms(again, near, shared_);
   there.resize(std::min(there.size(), kFittedTerms), RankedTerm{{}});
   for (RankedTerm& one : there) {
