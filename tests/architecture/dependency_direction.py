@@ -142,6 +142,7 @@ LIBRARIES = {
         "analysis/chrono",
         "store",
         "results",
+        "view/fstream",
         "study",
         "python/chrono",
         "cli",

@@ -1,14 +1,19 @@
 """twinmap view: the page and the picture of a mechanism."""
 import base64
 import json
+import os
 import re
+import shutil
 import struct
+import subprocess
 import tempfile
 import unittest
 import xml.etree.ElementTree as ET
 from math import atan2, cos, pi, sin
 from pathlib import Path
+from unittest import mock
 
+import numpy as np
 from support import EXPERIMENTS, call
 
 CHAIN = """
@@ -27,6 +32,7 @@ simulation: {duration: 1}
 features: [{samples: {outputs: [x], start: 0, interval: 0.01, count: 101}}]
 noise: {stddev: {x: 1e-3}}
 """
+SEEN = "mass: 1, shapes: [{sphere: 0.2}]"
 SVG = "{http://www.w3.org/2000/svg}"
 PENDULUM = """
 name: pen<du>lum
@@ -288,6 +294,53 @@ class View(unittest.TestCase):
             result = call("check", self.file)
             self.assertEqual(result.returncode, 2, shapes)
             self.assertRegex(result.stderr, rf"pendulum.yaml:\d+:\d+: .*{what}", shapes)
+
+    def film(self, *arguments):
+        """The film's stream as ffprobe describes it, and its frames, one byte a pixel, by brightness."""
+        film = self.folder / "film.mp4"
+        result = call("view", *arguments, "--mp4", film)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        asked = ["-show_entries", "stream=width,height,duration,nb_frames", "-of", "json", film]
+        stream = json.loads(subprocess.run(["ffprobe", "-v", "error", *asked], capture_output=True, check=True).stdout)
+        raw = ["ffmpeg", "-v", "error", "-i", film, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+        pixels = subprocess.run(raw, capture_output=True, check=True).stdout
+        width, height = (stream["streams"][0][key] for key in ("width", "height"))
+        return stream["streams"][0], np.frombuffer(pixels, np.uint8).reshape(-1, height, width, 3).astype(int)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_a_film_shows_the_motion_in_real_time(self):
+        self.file.write_text(CHAIN.replace("duration: 1", "duration: 2").replace("mass: 1", SEEN))
+        stream, frames = self.film(self.file)
+        self.assertEqual(int(stream["nb_frames"]), 51)
+        self.assertAlmostEqual(float(stream["duration"]), 51 / 25, delta=1e-6)
+        # Both carriages slide along the picture's width. Their sum, x + y = 0.1 cos 10 t, is the first mode alone:
+        # the first and the last blue column follow it. Above 100 pixels stands what blue means.
+        blue = (frames[:, 100:, :, 2] - frames[:, 100:, :, 0] > 30).any(axis=1)
+        where = [np.flatnonzero(columns)[[0, -1]].mean() for columns in blue]
+        self.assertGreater(np.corrcoef(where, np.cos(10 * np.arange(51) / 25))[0, 1], 0.99)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_a_film_overlays_all_motions_and_is_slowed_where_they_are_short(self):
+        measured = self.folder / "m.csv"
+        call("simulate", self.file, "parameters.g=9.2", "--noise", "--csv", measured)
+        self.assertEqual(len(self.film(self.file, measured)[1]), 51)
+        self.file.write_text(CHAIN.replace("duration: 1", "duration: 0.1").replace("count: 101", "count: 11"))
+        self.assertEqual(len(self.film(self.file)[1]), 51)  # 2 s at 0.05 times the speed
+
+    def test_without_ffmpeg_a_film_says_what_to_install(self):
+        with mock.patch.dict(os.environ, {"PATH": ""}):
+            result = call("view", self.file, "--mp4", self.folder / "film.mp4")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("apt install ffmpeg", result.stderr)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_what_does_not_move_has_no_film(self):
+        still = PENDULUM.replace("pen<du>lum", "still").replace("simulation: {", "simulation: {max_steps: 3, ")
+        self.file.write_text(still)
+        for file in (self.file, EXPERIMENTS / "python_plant/python_plant.yaml"):
+            result = call("view", file, "--mp4", self.folder / "film.mp4")
+            self.assertEqual((result.returncode, (self.folder / "film.mp4").exists()), (1, False), file)
+            self.assertIn("leave --mp4 out", result.stderr)
 
     def test_a_model_from_elsewhere_has_a_picture_of_its_outputs(self):
         call("view", EXPERIMENTS / "python_plant/python_plant.yaml", "--svg", self.folder / "picture.svg")
