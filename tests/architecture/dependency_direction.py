@@ -106,7 +106,7 @@ LIBRARIES = {
     r"hdf5.*": {"base", "store"},
     r"matio.*": {"data"},
     r"zip\.h": {"models/fmu"},
-    r"pugixml\.hpp": {"models/fmu", "robots"},
+    r"pugixml\.hpp": {"models/fmu", "robots", "view"},
     r"(dlfcn|link)\.h": {"models/fmu", "models/mechanism", "c_api"},
     r"pybind11/.*": {"python"},
     r"xxhash.*": {"base", "store"},

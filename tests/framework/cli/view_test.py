@@ -32,6 +32,24 @@ simulation: {duration: 1}
 features: [{samples: {outputs: [x], start: 0, interval: 0.01, count: 101}}]
 noise: {stddev: {x: 1e-3}}
 """
+# A tetrahedron's faces as triangles, polylist, polygons and a strip; two nodes draw it, one of them by a node of a library.
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimetre" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="solid"><mesh>
+<source id="places"><float_array id="numbers" count="16">0 0 0 9  10 0 0 9  0 20 0 9  0 0 +3e1 9</float_array>
+<technique_common><accessor source="#numbers" count="4" stride="4"/></technique_common></source>
+<vertices id="corners"><input semantic="POSITION" source="#places"/></vertices>
+<triangles count="1"><input semantic="NORMAL" source="#places" offset="0"/>
+<input semantic="VERTEX" source="#corners" offset="1"/><p>3 0 3 1 3 2</p></triangles>
+<polylist count="1"><input semantic="VERTEX" source="#corners" offset="0"/><vcount>3</vcount><p>0 1 3</p></polylist>
+<polygons count="1"><input semantic="VERTEX" source="#corners" offset="0"/><p>0 2 3</p></polygons>
+<tristrips count="1"><input semantic="VERTEX" source="#corners" offset="0"/><p>1 2 3</p></tristrips>
+</mesh></geometry></library_geometries>
+<library_nodes><node id="part"><rotate>0 0 2 90</rotate><instance_geometry url="#solid"/></node></library_nodes>
+<library_visual_scenes><visual_scene id="scene"><node>NODES</node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#scene"/></scene></COLLADA>
+"""
 SEEN = "mass: 1, shapes: [{sphere: 0.2}]"
 SVG = "{http://www.w3.org/2000/svg}"
 PENDULUM = """
@@ -263,6 +281,70 @@ class View(unittest.TestCase):
         self.assertEqual(one, two)
         self.assertEqual(one, three)
         self.assertEqual(box["kind"], "box")
+
+    def read_collada(self, text, scale=1):
+        """What is drawn of it, and warnings."""
+        (self.folder / "solid.DAE").write_text(text)
+        self.add_shapes(f"[{{mesh: solid.DAE, scale: [{scale}, {scale}, {scale}]}}]")
+        result = call("view", self.file, "--out", self.folder / "page.html")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return read_scene((self.folder / "page.html").read_text())["bodies"][1]["shapes"][0], result.stderr
+
+    def list_triangles(self, shape):
+        """Corners of triangles in m."""
+        points = [
+            [at + edge * step / 65535 for at, edge, step in zip(shape["frame"][9:], shape["size"], point)]
+            for point in struct.iter_unpack("<3H", base64.b64decode(shape["points"]))
+        ]
+        return np.array(
+            [[points[i] for i in face] for face in struct.iter_unpack("<3I", base64.b64decode(shape["triangles"]))]
+        )
+
+    def test_a_collada_file_is_drawn_in_its_unit_by_its_nodes(self):
+        corners = np.array([(0, 0, 0), (10, 0, 0), (0, 20, 0), (0, 0, 30)]) / 100
+        faces = [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)]
+        plain = "<instance_geometry url='#solid'/>"
+        shape, warnings = self.read_collada(COLLADA.replace("NODES", plain), 10)
+        self.assertEqual(warnings.count("warning"), 0)
+        np.testing.assert_allclose(self.list_triangles(shape), [10 * corners[list(face)] for face in faces], atol=1e-4)
+        # Row by row; then a mirror image of the part that is turned by 90 degrees, whose faces still look outwards.
+        moved = "<matrix>1 0 0 100  0 1 0 0  0 0 1 0  0 0 0 1</matrix>" + plain
+        part = "<node><translate>0 0 -100</translate><scale>1 -1 1</scale><instance_node url='#part'/></node>"
+        triangles = self.list_triangles(self.read_collada(COLLADA.replace("NODES", moved + part))[0])
+        np.testing.assert_allclose(triangles[:4], [corners[list(face)] + [1, 0, 0] for face in faces], atol=1e-4)
+        turned = np.array([(-y, x, z) for x, y, z in corners]) * [1, -1, 1] + [1, 0, -1]
+        expected = [turned[[a, c, b]] for a, b, c in faces]
+        np.testing.assert_allclose(triangles[4:], expected, atol=1e-4)
+
+    def test_a_collada_file_that_cannot_be_read_is_a_box_and_says_why(self):
+        good = COLLADA.replace("NODES", "<instance_geometry url='#solid'/>")
+        for text, reason in (
+            ("<COLLADA>", "is not XML"),
+            ("<svg/>", "no <COLLADA>"),
+            (good.replace("url='#solid'", "url='#other'"), "points at nothing in the file: '#other'"),
+            (good.replace("+3e1", "3,1"), "not a number: '3,1'"),
+            (good.replace("<p>0 1 3</p>", "<p>0 1 4</p>"), "corner that does not exist: 4"),
+            (good.replace("<vcount>3</vcount>", "<vcount>4</vcount>"), "fewer corners"),
+            (good.replace("+3e1", "nan"), "not finite"),
+            (COLLADA.replace("NODES", "<skew>1 2 3 4 5 6 7</skew>"), "<skew> is not read"),
+            (COLLADA.replace("NODES", "<matrix>1 2 3</matrix>"), "must have 16 numbers"),
+            (COLLADA.replace("NODES", ""), "no triangles"),
+            (COLLADA.replace("NODES", "<node id='a'><instance_node url='#a'/></node>"), "without end"),
+        ):
+            shape, warnings = self.read_collada(text)
+            self.assertEqual(shape["kind"], "box", reason)
+            self.assertRegex(warnings, f"solid.DAE: .*{reason}.*; a box is drawn in its place")
+
+    def test_a_collada_file_of_endless_copies_is_refused_at_once(self):
+        doubling = "".join(
+            f"<node id='n{i}'><instance_node url='#n{i + 1}'/><instance_node url='#n{i + 1}'/></node>"
+            for i in range(60)
+        )
+        nodes = "<instance_node url='#n0'/>"
+        text = COLLADA.replace("<library_nodes>", "<library_nodes>" + doubling + "<node id='n60'/>")
+        shape, warnings = self.read_collada(text.replace("NODES", nodes))
+        self.assertEqual(shape["kind"], "box")
+        self.assertIn("more than 2000000 triangles", warnings)
 
     def test_a_fine_mesh_is_coarsened_and_says_so(self):
         steps = 400  # 320 000 triangles of a wavy plane
