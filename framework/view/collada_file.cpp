@@ -52,7 +52,7 @@ class ColladaReader {
     std::map<std::string, Node>& places;
   };
 
-  /// Where each kind of index of a primitive stands among its numbers, and the points of the corners.
+  /// Of a primitive: which of its numbers are places of corners, and the points there.
   struct Layout {
     std::size_t offset = 0, stride = 1;
     const std::vector<Vector>* points = nullptr;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "framework/view/mesh_file.hpp"
+#include "framework/view/mesh_corners.hpp"
 
 namespace twinmap::view {
 

@@ -157,8 +157,8 @@ class Drawing {
   Point toPicture(const Vector& v) const { return camera_.toPicture(v); }
   Vector getJoint(std::size_t i) const { return findJoint(scene_, poses_, i); }
 
-  /// The outline of an ellipsoid with axes a_k is that of the ellipse with the matrix sum of p_k p_k', p_k
-  /// the projections of the axes.
+  /// The outline of an ellipsoid with axes a_k is the ellipse with the matrix sum of p_k p_k', p_k the
+  /// projections of the axes.
   void drawBody(std::size_t i) {
     const SceneBody& body = scene_.bodies[i];
     const Vector& radii = body.ellipsoid.radii;

@@ -12,7 +12,7 @@ struct FilmPace {
   double speed;  ///< model's seconds a second
 };
 
-/// In real time where the film then takes 2 to 60 s; else slower or faster by 1, 2 or 5 times a power of 10.
+/// In real time where that takes 2 to 60 s; else slower or faster by 1, 2 or 5 times a power of 10.
 FilmPace choosePace(double duration);
 
 /// Throws std::runtime_error, which says what to install, where there is no ffmpeg.

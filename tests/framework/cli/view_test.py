@@ -51,6 +51,13 @@ COLLADA = """<?xml version="1.0"?>
 <scene><instance_visual_scene url="#scene"/></scene></COLLADA>
 """
 SEEN = "mass: 1, shapes: [{sphere: 0.2}]"
+# Links of 0.1 m that turn about z, y and x by turns.
+LINK = (
+    '<link name="l{i}"><inertial><origin xyz="0 0 0.05"/><mass value="0.5"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-4" '
+    'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="j{i}" type="revolute"><parent link="l{before}"/>'
+    '<child link="l{i}"/><origin xyz="0 0 0.1" rpy="0.1 0.1 0"/><axis xyz="{axis}"/><limit effort="10" velocity="3" lower="-2" '
+    'upper="2"/><dynamics damping="0.5"/></joint>'
+)
 SVG = "{http://www.w3.org/2000/svg}"
 PENDULUM = """
 name: pen<du>lum
@@ -423,6 +430,28 @@ class View(unittest.TestCase):
             result = call("view", file, "--mp4", self.folder / "film.mp4")
             self.assertEqual((result.returncode, (self.folder / "film.mp4").exists()), (1, False), file)
             self.assertIn("leave --mp4 out", result.stderr)
+
+    def test_a_chain_of_sixty_joints_is_simulated_and_drawn_and_what_was_measured_beside_it(self):
+        links = "".join(LINK.format(i=i, before=i - 1, axis=("0 0 1", "0 1 0", "1 0 0")[i % 3]) for i in range(1, 61))
+        (self.folder / "chain.urdf").write_text(f'<robot name="chain"><link name="l0"/>{links}</robot>')
+        imported = call("import", self.folder / "chain.urdf")
+        self.assertEqual(imported.returncode, 0, imported.stderr)
+        text = imported.stdout.replace("unknown", "1e-3").replace(
+            "simulation: {duration: 1}", "simulation: {duration: 0.1}"
+        )
+        self.file.write_text(re.sub(r"count: \d+", "count: 11", text))
+        measured = self.folder / "m.csv"
+        simulated = call("simulate", self.file, "--noise", "--csv", measured)
+        self.assertEqual(simulated.returncode, 0, simulated.stderr)
+        result = call("view", self.file, measured, "--out", self.folder / "page.html")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("of more than 30 bodies the model is not fitted", result.stderr)
+        self.assertIn("no modes: they are sought of at most 30 coordinates", result.stderr)
+        scene = read_scene((self.folder / "page.html").read_text())
+        self.assertEqual([motion["name"] for motion in scene["motions"]], ["nominal", "measured"])
+        one, other = (np.array(motion["poses"]) for motion in scene["motions"])
+        self.assertLess(abs(one - other).max(), 60 * 6e-3)  # noise of 1e-3 rad at each joint
+        self.assertGreater(abs(one - other).max(), 1e-4)
 
     def test_a_model_from_elsewhere_has_a_picture_of_its_outputs(self):
         call("view", EXPERIMENTS / "python_plant/python_plant.yaml", "--svg", self.folder / "picture.svg")

@@ -1,15 +1,19 @@
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/commands/measurements/replay_measurement.hpp"
+#include "framework/data/measurement/files/read_table.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
+#include "framework/data/noise/noise.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/models/make_simulator.hpp"
 #include "framework/view/film.hpp"
 #include "framework/view/make_scene.hpp"
 #include "framework/view/measured.hpp"
@@ -34,11 +38,56 @@ ExperimentSpec loadExperiment(const ExperimentArguments& arguments) {
 
 using twinmap::view::Scene;
 
+Eigen::VectorXd findCenter(const ExperimentSpec& experiment) {
+  return calcBoxCenter(collectSampled(experiment.model));
+}
+
+/// What was measured beside the nominal model, which is not fitted.
+struct Unfitted {
+  Unfitted(const MeasurementReader& reader, const Table& table, const std::optional<double>& start)
+      : experiment(reader.getExperiment()),
+        layout(reader.getLayout()),
+        measured(reader.readAvailableFeatures(table, start).response),
+        noise_stddev(calcNoiseStddev(experiment.noise, layout)) {}
+
+  /// The model's own response; NaN where it fails.
+  Eigen::VectorXd simulate() const {
+    Eigen::MatrixXd response(layout.getRowCount(), 1);
+    SampleStatus status;
+    makeTrustedSimulator(experiment.model, layout.times, layout.modes)
+        ->simulate(Eigen::MatrixXd(findCenter(experiment)), response, &status);
+    return response.col(0);
+  }
+
+  ExperimentSpec experiment;  ///< with the excitation of the measurement
+  ResponseLayout layout;
+  Eigen::VectorXd measured, noise_stddev;
+};
+
+Unfitted readUnfitted(const ViewArguments& arguments, const ExperimentSpec& experiment) {
+  const MeasurementReader reader(experiment);
+  const Table table = readTable(arguments.measurement, reader.listColumns(), MissingCells::kKeep);
+  std::optional<ExperimentSpec> followed = reader.follow(table, arguments.start);
+  return followed ? Unfitted(MeasurementReader(std::move(*followed)), table, arguments.start)
+                  : Unfitted(reader, table, arguments.start);
+}
+
+/// A fit asks terms at each joint, each by equations of all bodies: of more it takes minutes to hours.
+constexpr std::size_t kMostFitted = 30;
+
 /// Draws the model, with a measurement before and after it, which is inferred once.
 class SceneMaker {
  public:
   SceneMaker(const ViewArguments& arguments, const ExperimentSpec& experiment) : experiment_(experiment) {
     if (arguments.measurement.empty()) {
+      return;
+    }
+    if (experiment.model.system.bodies.size() > kMostFitted) {
+      std::cerr << "warning: of more than " << kMostFitted
+                << " bodies the model is not fitted to be drawn: what was measured moves beside the nominal "
+                   "one; fit "
+                   "it by infer\n";
+      unfitted_ = readUnfitted(arguments, experiment);
       return;
     }
     ReplayArguments asked;
@@ -52,16 +101,31 @@ class SceneMaker {
 
   /// `frames` as of makeScene.
   Scene make(int frames) const {
-    return replay_ ? makeMeasured(frames)
-                   : twinmap::view::makeScene(experiment_, calcBoxCenter(collectSampled(experiment_.model)),
-                                              "nominal", frames);
+    return replay_     ? makeMeasured(frames)
+           : unfitted_ ? makeUnfitted(frames)
+                       : makeNominal(experiment_, frames);
   }
 
   double getDuration() const {
-    return (replay_ ? replay_->experiment : experiment_).model.simulation.duration;
+    const ExperimentSpec& drawn = replay_     ? replay_->experiment
+                                  : unfitted_ ? unfitted_->experiment
+                                              : experiment_;
+    return drawn.model.simulation.duration;
   }
 
  private:
+  static Scene makeNominal(const ExperimentSpec& experiment, int frames) {
+    return twinmap::view::makeScene(experiment, findCenter(experiment), "nominal", frames);
+  }
+
+  Scene makeUnfitted(int frames) const {
+    const Unfitted& all = *unfitted_;
+    Scene scene = makeNominal(all.experiment, frames);
+    twinmap::view::addMeasurement(all.experiment, findCenter(all.experiment),
+                                  {all.layout, all.measured, all.simulate(), all.noise_stddev}, scene);
+    return scene;
+  }
+
   Scene makeMeasured(int frames) const {
     const Replay& replay = *replay_;
     const std::vector<std::string> statuses = selectEstimate(replay.inferred).statuses;
@@ -76,6 +140,7 @@ class SceneMaker {
 
   const ExperimentSpec& experiment_;
   std::optional<Replay> replay_;
+  std::optional<Unfitted> unfitted_;
 };
 
 void printRemarks(const Scene& scene) {
