@@ -1,23 +1,12 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "framework/robots/bodies.hpp"
-#include "framework/robots/recording.hpp"
+#include "framework/robots/import_options.hpp"
+#include "framework/robots/robot.hpp"
 
 namespace twinmap::robots {
-
-struct ImportOptions {
-  Base base = Base::kFixed;
-  std::vector<std::string> parameters;   ///< inertia, friction, armature, damping
-  std::vector<std::string> joints;       ///< that move; empty: all
-  std::optional<Recording> recording{};  ///< whose columns are called as coordinates and signals
-  bool from_motion = false;              ///< the motion is known, and what drives exert is measured
-  bool stops = false;                    ///< limits of joints become rigid stops
-  double relative_stddev = 0.2;          ///< of the parameters' priors
-};
 
 /// An experiment file that describes the robot, with what it leaves out at its head. `robot.left_out` gets
 /// what this finds. Throws ExperimentError as assembleBodies() does, and for parameters that the file gives

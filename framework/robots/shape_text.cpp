@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
+#include <sstream>
 
 #include "framework/robots/recording.hpp"
 #include "framework/robots/yaml_text.hpp"
@@ -33,15 +35,43 @@ std::string writeShape(const ShapeSpec& shape) {
   return shape.cylinder ? writeRound("cylinder", *shape.cylinder) : writeRound("capsule", *shape.capsule);
 }
 
+namespace fs = std::filesystem;
+
+constexpr const char *kFile = "file://", *kPackage = "package://";
+
+/// Folders that packages of ROS may stand in: those of ROS_PACKAGE_PATH, those above the robot's file.
+std::vector<fs::path> listPackageFolders(const std::string& robot_file) {
+  std::vector<fs::path> folders;
+  const char* listed = std::getenv("ROS_PACKAGE_PATH");
+  std::istringstream words(listed != nullptr ? listed : "");
+  for (std::string folder; std::getline(words, folder, ':') && !folder.empty();) {
+    folders.insert(folders.end(), {folder, fs::path(folder).parent_path()});  // it may be a package itself
+  }
+  fs::path above = fs::absolute(robot_file).lexically_normal();
+  while (above.has_relative_path()) {
+    above = above.parent_path();
+    folders.push_back(above);
+  }
+  return folders;
+}
+
 }  // namespace
 
 std::string locateMesh(const std::string& robot_file, const std::string& mesh) {
-  constexpr const char* kFile = "file://";
   if (mesh.rfind(kFile, 0) == 0) {
     return mesh.substr(std::string(kFile).size());
   }
+  if (mesh.rfind(kPackage, 0) == 0) {
+    for (const fs::path& folder : listPackageFolders(robot_file)) {
+      const fs::path place = folder / mesh.substr(std::string(kPackage).size());
+      std::error_code failure;
+      if (fs::is_regular_file(place, failure)) {
+        return place.string();
+      }
+    }
+  }
   const bool is_elsewhere = mesh.find("://") != std::string::npos;
-  return is_elsewhere ? mesh : (std::filesystem::path(robot_file).parent_path() / mesh).string();
+  return is_elsewhere ? mesh : (fs::path(robot_file).parent_path() / mesh).string();
 }
 
 void noteGround(Robot& robot, const Assembly& assembly) {

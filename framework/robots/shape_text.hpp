@@ -6,7 +6,8 @@
 
 namespace twinmap::robots {
 
-/// The file of a mesh as an experiment beside the robot's file names it; one in a package of ROS is as it is.
+/// The file of a mesh as an experiment beside the robot's file names it. One in a package of ROS is sought in
+/// ROS_PACKAGE_PATH and above the robot's file; as it is where it is not there.
 std::string locateMesh(const std::string& robot_file, const std::string& mesh);
 
 /// Says of what does not move that it is not drawn: the ground has no shapes.

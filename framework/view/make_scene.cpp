@@ -164,9 +164,10 @@ ModelSpec makeDrawn(const ModelSpec& model, const std::vector<std::string>& coor
   return drawn;
 }
 
-Eigen::VectorXd makeTimes(const ModelSpec& model) {
+Eigen::VectorXd makeTimes(const ModelSpec& model, int frames) {
   const double duration = model.simulation.duration;
-  return duration > 0.0 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(countFrames(model), 0.0, duration))
+  const int count = frames > 0 ? frames : countFrames(model);
+  return duration > 0.0 ? Eigen::VectorXd(Eigen::VectorXd::LinSpaced(count, 0.0, duration))
                         : Eigen::VectorXd(Eigen::VectorXd::Zero(1));
 }
 
@@ -242,9 +243,10 @@ Scene makeUnsolved(const ExperimentSpec& experiment, const Eigen::VectorXd& poin
 
 }  // namespace
 
-Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion) {
+Scene makeScene(const ExperimentSpec& experiment, const Eigen::VectorXd& point, const std::string& motion,
+                int frames) {
   try {
-    Scene scene = describeMechanism(makeTimes(experiment.model), experiment, point);
+    Scene scene = describeMechanism(makeTimes(experiment.model, frames), experiment, point);
     addMotion(experiment, point, motion, scene);
     addModes(experiment.model, point, scene);
     return scene;

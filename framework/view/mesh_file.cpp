@@ -9,6 +9,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/view/collada_file.hpp"
 
 namespace twinmap::view {
 namespace {
@@ -114,14 +115,15 @@ std::string getEnding(const std::string& path) {
 
 Corners readMeshFile(const std::string& path) {
   const std::string ending = getEnding(path);
-  if (ending != "stl" && ending != "obj") {
-    fail(path, "is not an STL or OBJ: convert it");
+  if (ending != "stl" && ending != "obj" && ending != "dae") {
+    fail(path, "is not an STL, OBJ or Collada file (.dae): convert it");
   }
-  const std::string bytes = readBytes(path);
+  std::string bytes = readBytes(path);
   if (bytes.size() > kLargestMesh) {
     fail(path, "has more than 100 MB: reduce its triangles");
   }
   Corners corners = ending == "obj"      ? readObj(bytes, path)
+                    : ending == "dae"    ? readCollada(std::move(bytes), path)
                     : isBinaryStl(bytes) ? readBinaryStl(bytes)
                                          : readTextStl(bytes, path);
   const auto is_finite = [](const Corner& corner) {

@@ -1,5 +1,7 @@
 #include "framework/view/modes.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -104,8 +106,13 @@ void addModes(const ModelSpec& model, const VectorXd& point, Scene& scene) {
   if (!programs.getObstacle().empty()) {
     return;
   }
+  const LaneModel& lanes = programs.getValues();
+  if (!lanes.isDifferentiated()) {
+    scene.remarks.push_back(
+        fmt::format("no modes: they are sought of at most {} coordinates", kMostDifferentiated));
+    return;
+  }
   try {
-    const LaneModel& lanes = programs.getValues();
     const VectorXd center = solveBoxCenter(context, lanes), none;
     const VectorXd equilibrium = LaneStart(completed, lanes, center, none).solveEquilibrium(point);
     ModeDrawer(model, point, scene).add(LaneModes(lanes).calcMatrix(point, equilibrium), equilibrium);

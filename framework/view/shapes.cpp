@@ -55,6 +55,9 @@ SceneShape readMesh(const ShapeSpec& spec) {
   for (const auto& corner : readMeshFile(spec.mesh->text)) {
     corners.push_back({corner[0] * spec.scale[0], corner[1] * spec.scale[1], corner[2] * spec.scale[2]});
   }
+  if (spec.scale[0] * spec.scale[1] * spec.scale[2] < 0.0) {  // or the mirror image would show its inside
+    std::reverse(corners.begin(), corners.end());
+  }
   Vector low = corners.front(), high = low;
   for (const Vector& corner : corners) {
     low = {std::min(low.x, corner.x), std::min(low.y, corner.y), std::min(low.z, corner.z)};

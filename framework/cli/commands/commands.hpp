@@ -205,6 +205,7 @@ struct ViewArguments {
   std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
   std::string out;                 ///< page; "": NAME.html, or none where a picture is asked for
   std::string svg;                 ///< picture; "": none
+  std::string mp4;                 ///< film; "": none
 };
 
 struct ReplayArguments {

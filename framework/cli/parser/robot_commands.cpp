@@ -56,6 +56,8 @@ void addView(CLI::App& app) {
   addKnown(*command, arguments->known);
   addOption(*command, "--out", "FILE", arguments->out, "File for the page (default: the experiment's name)");
   addOption(*command, "--svg", "FILE", arguments->svg, "File for a static picture instead, or beside --out");
+  addOption(*command, "--mp4", "FILE", arguments->mp4,
+            "File for a film instead, or beside: all motions overlaid, by ffmpeg");
   command->callback([arguments] { view(*arguments); });
 }
 

@@ -81,7 +81,7 @@ struct OutputSpec {
   std::optional<BodySensorSpec> specific_force;    ///< acceleration less gravity
   std::optional<BodySensorSpec> angular_velocity;  ///< whatever the point
   std::optional<ReactionSpec> reaction;
-  std::optional<Name> force_of;             ///< a named force element or constraint
+  std::optional<Name> force_of;  ///< a named force element or constraint, a coordinate that is moved
   std::optional<ForceComponent> component;  ///< of force_of; none: along its coordinate, line or normal
   Expression expression{"", {}};
   std::optional<Name> variable;
@@ -105,7 +105,8 @@ void describe(Fields& f, OutputSpec& s) {
       choice("angular_velocity", s.angular_velocity,
              "what a gyroscope on a body reads, along a direction; rad/s"),
       choice("reaction", s.reaction, "force or moment in a joint; N or N m"),
-      choice("force_of", s.force_of, "force or moment of a named force element or constraint; N or N m"),
+      choice("force_of", s.force_of,
+             "of a named force element or constraint, or of what moves a coordinate in 'motions'; N or N m"),
       choice("expression", s.expression,
              "of coordinates, speeds, accelerations (<coordinate>_ddot), states and signals",
              Unit{"", nullptr, true, true}),

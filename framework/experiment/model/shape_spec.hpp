@@ -37,7 +37,7 @@ void describe(Fields& f, ShapeSpec& s) {
           choice("cylinder", s.cylinder, "along z, its middle at 'point'"),
           choice("capsule", s.capsule, "along z, its middle at 'point'"),
           choice("sphere", s.sphere, "its radius; m", kPositive),
-          choice("mesh", s.mesh, "a file, STL or OBJ, in m; relative to the experiment file"));
+          choice("mesh", s.mesh, "a file, STL, OBJ or Collada, in m; relative to the experiment file"));
   f.optional("scale", s.scale, "of a mesh along x, y, z: 0.001 each for one in mm; default 1");
   f.optional("point", s.point, "of its frame, in the body's frame; m; default 0");
   f.optional("orientation", s.orientation, "of its frame: body-fixed x-y-z angles; rad; default 0");

@@ -97,8 +97,13 @@ class UrdfReader {
 
   void listPackages(const pugi::xml_node& node) {
     for (const pugi::xpath_node& found : node.select_nodes(".//mesh[starts-with(@filename, 'package://')]")) {
-      robot_.leaveOut(file_.getLine(found.node()), "package://",
-                      "a mesh in a package of ROS: to see it, write its path in place of package://");
+      const std::string mesh = found.node().attribute("filename").value();
+      if (locateMesh(file_.getPath(), mesh) == mesh) {
+        robot_.leaveOut(
+            file_.getLine(found.node()), "package://",
+            "a mesh in a package of ROS that is not found: to see it, put the package's folder into "
+            "ROS_PACKAGE_PATH");
+      }
     }
   }
 

@@ -6,6 +6,7 @@ import re
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import yaml
 from support import call
@@ -187,6 +188,23 @@ class Import(unittest.TestCase):
         self.assertAlmostEqual(shapes[0]["orientation"][2], 1.5, delta=1e-12)
         self.assertEqual(shapes[1]["cylinder"], {"radius": 0.1, "length": 0.3})
         self.assertIn(": <visual> without a shape: ", result.stderr)
+
+    def test_a_mesh_in_a_package_is_found_above_the_robot_or_where_ros_says(self):
+        file, mesh = self.folder / "arm_description/urdf/robot.urdf", "package://arm_description/meshes/a.dae"
+        file.parent.mkdir(parents=True)
+        visual = f'<visual><geometry><mesh filename="{mesh}"/></geometry></visual><visual>'
+        file.write_text(ARM.replace("<visual>", visual, 1))
+        elsewhere = self.folder / "ws/arm_description/meshes/a.dae"
+        beside = self.folder / "arm_description/meshes/a.dae"
+        for place, ros in ((None, ""), (elsewhere, "/none:" + str(self.folder / "ws")), (beside, "")):
+            if place:
+                place.parent.mkdir(parents=True)
+                place.write_text("")
+            with mock.patch.dict(os.environ, {"ROS_PACKAGE_PATH": ros}):
+                experiment, result = import_robot(file)
+            shapes = next(body["shapes"] for body in experiment["system"]["bodies"].values() if "shapes" in body)
+            self.assertEqual(shapes[0]["mesh"], str(place or mesh))
+            self.assertEqual(": package://: a mesh in a package of ROS that is not found" in result.stderr, not place)
 
     def test_what_is_not_of_urdf_is_named(self):
         file = self.folder / "robot.urdf"

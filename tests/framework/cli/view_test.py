@@ -1,14 +1,19 @@
 """twinmap view: the page and the picture of a mechanism."""
 import base64
 import json
+import os
 import re
+import shutil
 import struct
+import subprocess
 import tempfile
 import unittest
 import xml.etree.ElementTree as ET
 from math import atan2, cos, pi, sin
 from pathlib import Path
+from unittest import mock
 
+import numpy as np
 from support import EXPERIMENTS, call
 
 CHAIN = """
@@ -27,6 +32,32 @@ simulation: {duration: 1}
 features: [{samples: {outputs: [x], start: 0, interval: 0.01, count: 101}}]
 noise: {stddev: {x: 1e-3}}
 """
+# A tetrahedron's faces as triangles, polylist, polygons and a strip; two nodes draw it, one of them by a node of a library.
+COLLADA = """<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimetre" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="solid"><mesh>
+<source id="places"><float_array id="numbers" count="16">0 0 0 9  10 0 0 9  0 20 0 9  0 0 +3e1 9</float_array>
+<technique_common><accessor source="#numbers" count="4" stride="4"/></technique_common></source>
+<vertices id="corners"><input semantic="POSITION" source="#places"/></vertices>
+<triangles count="1"><input semantic="NORMAL" source="#places" offset="0"/>
+<input semantic="VERTEX" source="#corners" offset="1"/><p>3 0 3 1 3 2</p></triangles>
+<polylist count="1"><input semantic="VERTEX" source="#corners" offset="0"/><vcount>3</vcount><p>0 1 3</p></polylist>
+<polygons count="1"><input semantic="VERTEX" source="#corners" offset="0"/><p>0 2 3</p></polygons>
+<tristrips count="1"><input semantic="VERTEX" source="#corners" offset="0"/><p>1 2 3</p></tristrips>
+</mesh></geometry></library_geometries>
+<library_nodes><node id="part"><rotate>0 0 2 90</rotate><instance_geometry url="#solid"/></node></library_nodes>
+<library_visual_scenes><visual_scene id="scene"><node>NODES</node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#scene"/></scene></COLLADA>
+"""
+SEEN = "mass: 1, shapes: [{sphere: 0.2}]"
+# Links of 0.1 m that turn about z, y and x by turns.
+LINK = (
+    '<link name="l{i}"><inertial><origin xyz="0 0 0.05"/><mass value="0.5"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-4" '
+    'ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="j{i}" type="revolute"><parent link="l{before}"/>'
+    '<child link="l{i}"/><origin xyz="0 0 0.1" rpy="0.1 0.1 0"/><axis xyz="{axis}"/><limit effort="10" velocity="3" lower="-2" '
+    'upper="2"/><dynamics damping="0.5"/></joint>'
+)
 SVG = "{http://www.w3.org/2000/svg}"
 PENDULUM = """
 name: pen<du>lum
@@ -258,6 +289,70 @@ class View(unittest.TestCase):
         self.assertEqual(one, three)
         self.assertEqual(box["kind"], "box")
 
+    def read_collada(self, text, scale=1):
+        """What is drawn of it, and warnings."""
+        (self.folder / "solid.DAE").write_text(text)
+        self.add_shapes(f"[{{mesh: solid.DAE, scale: [{scale}, {scale}, {scale}]}}]")
+        result = call("view", self.file, "--out", self.folder / "page.html")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return read_scene((self.folder / "page.html").read_text())["bodies"][1]["shapes"][0], result.stderr
+
+    def list_triangles(self, shape):
+        """Corners of triangles in m."""
+        points = [
+            [at + edge * step / 65535 for at, edge, step in zip(shape["frame"][9:], shape["size"], point)]
+            for point in struct.iter_unpack("<3H", base64.b64decode(shape["points"]))
+        ]
+        return np.array(
+            [[points[i] for i in face] for face in struct.iter_unpack("<3I", base64.b64decode(shape["triangles"]))]
+        )
+
+    def test_a_collada_file_is_drawn_in_its_unit_by_its_nodes(self):
+        corners = np.array([(0, 0, 0), (10, 0, 0), (0, 20, 0), (0, 0, 30)]) / 100
+        faces = [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)]
+        plain = "<instance_geometry url='#solid'/>"
+        shape, warnings = self.read_collada(COLLADA.replace("NODES", plain), 10)
+        self.assertEqual(warnings.count("warning"), 0)
+        np.testing.assert_allclose(self.list_triangles(shape), [10 * corners[list(face)] for face in faces], atol=1e-4)
+        # Row by row; then a mirror image of the part that is turned by 90 degrees, whose faces still look outwards.
+        moved = "<matrix>1 0 0 100  0 1 0 0  0 0 1 0  0 0 0 1</matrix>" + plain
+        part = "<node><translate>0 0 -100</translate><scale>1 -1 1</scale><instance_node url='#part'/></node>"
+        triangles = self.list_triangles(self.read_collada(COLLADA.replace("NODES", moved + part))[0])
+        np.testing.assert_allclose(triangles[:4], [corners[list(face)] + [1, 0, 0] for face in faces], atol=1e-4)
+        turned = np.array([(-y, x, z) for x, y, z in corners]) * [1, -1, 1] + [1, 0, -1]
+        expected = [turned[[a, c, b]] for a, b, c in faces]
+        np.testing.assert_allclose(triangles[4:], expected, atol=1e-4)
+
+    def test_a_collada_file_that_cannot_be_read_is_a_box_and_says_why(self):
+        good = COLLADA.replace("NODES", "<instance_geometry url='#solid'/>")
+        for text, reason in (
+            ("<COLLADA>", "is not XML"),
+            ("<svg/>", "no <COLLADA>"),
+            (good.replace("url='#solid'", "url='#other'"), "points at nothing in the file: '#other'"),
+            (good.replace("+3e1", "3,1"), "not a number: '3,1'"),
+            (good.replace("<p>0 1 3</p>", "<p>0 1 4</p>"), "corner that does not exist: 4"),
+            (good.replace("<vcount>3</vcount>", "<vcount>4</vcount>"), "fewer corners"),
+            (good.replace("+3e1", "nan"), "not finite"),
+            (COLLADA.replace("NODES", "<skew>1 2 3 4 5 6 7</skew>"), "<skew> is not read"),
+            (COLLADA.replace("NODES", "<matrix>1 2 3</matrix>"), "must have 16 numbers"),
+            (COLLADA.replace("NODES", ""), "no triangles"),
+            (COLLADA.replace("NODES", "<node id='a'><instance_node url='#a'/></node>"), "without end"),
+        ):
+            shape, warnings = self.read_collada(text)
+            self.assertEqual(shape["kind"], "box", reason)
+            self.assertRegex(warnings, f"solid.DAE: .*{reason}.*; a box is drawn in its place")
+
+    def test_a_collada_file_of_endless_copies_is_refused_at_once(self):
+        doubling = "".join(
+            f"<node id='n{i}'><instance_node url='#n{i + 1}'/><instance_node url='#n{i + 1}'/></node>"
+            for i in range(60)
+        )
+        nodes = "<instance_node url='#n0'/>"
+        text = COLLADA.replace("<library_nodes>", "<library_nodes>" + doubling + "<node id='n60'/>")
+        shape, warnings = self.read_collada(text.replace("NODES", nodes))
+        self.assertEqual(shape["kind"], "box")
+        self.assertIn("more than 2000000 triangles", warnings)
+
     def test_a_fine_mesh_is_coarsened_and_says_so(self):
         steps = 400  # 320 000 triangles of a wavy plane
         lines = ["v %g %g %g" % (i, j, sin(i) + cos(j)) for i in range(steps) for j in range(steps)]
@@ -288,6 +383,75 @@ class View(unittest.TestCase):
             result = call("check", self.file)
             self.assertEqual(result.returncode, 2, shapes)
             self.assertRegex(result.stderr, rf"pendulum.yaml:\d+:\d+: .*{what}", shapes)
+
+    def film(self, *arguments):
+        """The film's stream as ffprobe describes it, and its frames, one byte a pixel, by brightness."""
+        film = self.folder / "film.mp4"
+        result = call("view", *arguments, "--mp4", film)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        asked = ["-show_entries", "stream=width,height,duration,nb_frames", "-of", "json", film]
+        stream = json.loads(subprocess.run(["ffprobe", "-v", "error", *asked], capture_output=True, check=True).stdout)
+        raw = ["ffmpeg", "-v", "error", "-i", film, "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+        pixels = subprocess.run(raw, capture_output=True, check=True).stdout
+        width, height = (stream["streams"][0][key] for key in ("width", "height"))
+        return stream["streams"][0], np.frombuffer(pixels, np.uint8).reshape(-1, height, width, 3).astype(int)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_a_film_shows_the_motion_in_real_time(self):
+        self.file.write_text(CHAIN.replace("duration: 1", "duration: 2").replace("mass: 1", SEEN))
+        stream, frames = self.film(self.file)
+        self.assertEqual(int(stream["nb_frames"]), 51)
+        self.assertAlmostEqual(float(stream["duration"]), 51 / 25, delta=1e-6)
+        # Both carriages slide along the picture's width. Their sum, x + y = 0.1 cos 10 t, is the first mode alone:
+        # the first and the last blue column follow it. Above 100 pixels stands what blue means.
+        blue = (frames[:, 100:, :, 2] - frames[:, 100:, :, 0] > 30).any(axis=1)
+        where = [np.flatnonzero(columns)[[0, -1]].mean() for columns in blue]
+        self.assertGreater(np.corrcoef(where, np.cos(10 * np.arange(51) / 25))[0, 1], 0.99)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_a_film_overlays_all_motions_and_is_slowed_where_they_are_short(self):
+        measured = self.folder / "m.csv"
+        call("simulate", self.file, "parameters.g=9.2", "--noise", "--csv", measured)
+        self.assertEqual(len(self.film(self.file, measured)[1]), 51)
+        self.file.write_text(CHAIN.replace("duration: 1", "duration: 0.1").replace("count: 101", "count: 11"))
+        self.assertEqual(len(self.film(self.file)[1]), 51)  # 2 s at 0.05 times the speed
+
+    def test_without_ffmpeg_a_film_says_what_to_install(self):
+        with mock.patch.dict(os.environ, {"PATH": ""}):
+            result = call("view", self.file, "--mp4", self.folder / "film.mp4")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("apt install ffmpeg", result.stderr)
+
+    @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")
+    def test_what_does_not_move_has_no_film(self):
+        still = PENDULUM.replace("pen<du>lum", "still").replace("simulation: {", "simulation: {max_steps: 3, ")
+        self.file.write_text(still)
+        for file in (self.file, EXPERIMENTS / "python_plant/python_plant.yaml"):
+            result = call("view", file, "--mp4", self.folder / "film.mp4")
+            self.assertEqual((result.returncode, (self.folder / "film.mp4").exists()), (1, False), file)
+            self.assertIn("leave --mp4 out", result.stderr)
+
+    def test_a_chain_of_sixty_joints_is_simulated_and_drawn_and_what_was_measured_beside_it(self):
+        links = "".join(LINK.format(i=i, before=i - 1, axis=("0 0 1", "0 1 0", "1 0 0")[i % 3]) for i in range(1, 61))
+        (self.folder / "chain.urdf").write_text(f'<robot name="chain"><link name="l0"/>{links}</robot>')
+        imported = call("import", self.folder / "chain.urdf")
+        self.assertEqual(imported.returncode, 0, imported.stderr)
+        text = imported.stdout.replace("unknown", "1e-3").replace(
+            "simulation: {duration: 1}", "simulation: {duration: 0.1}"
+        )
+        self.file.write_text(re.sub(r"count: \d+", "count: 11", text))
+        measured = self.folder / "m.csv"
+        simulated = call("simulate", self.file, "--noise", "--csv", measured)
+        self.assertEqual(simulated.returncode, 0, simulated.stderr)
+        result = call("view", self.file, measured, "--out", self.folder / "page.html")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("of more than 30 bodies the model is not fitted", result.stderr)
+        self.assertIn("no modes: they are sought of at most 30 coordinates", result.stderr)
+        scene = read_scene((self.folder / "page.html").read_text())
+        self.assertEqual([motion["name"] for motion in scene["motions"]], ["nominal", "measured"])
+        one, other = (np.array(motion["poses"]) for motion in scene["motions"])
+        self.assertLess(abs(one - other).max(), 60 * 6e-3)  # noise of 1e-3 rad at each joint
+        self.assertGreater(abs(one - other).max(), 1e-4)
 
     def test_a_model_from_elsewhere_has_a_picture_of_its_outputs(self):
         call("view", EXPERIMENTS / "python_plant/python_plant.yaml", "--svg", self.folder / "picture.svg")

@@ -1,17 +1,12 @@
 #include "framework/models/fmu/package/compile_sources.hpp"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include "framework/base/text/source_location.hpp"
+#include "framework/base/worker/run_program.hpp"
 #include "framework/models/fmu/package/standard_headers.hpp"
 #include "framework/models/fmu/package/xml_values.hpp"
 
@@ -119,29 +114,6 @@ std::vector<std::string> composeCommand(const SourceTree& tree, const Build& bui
   return command;
 }
 
-/// The exit status; -1 if the command cannot be started. What it says goes into a file.
-int runIn(const fs::path& folder, const std::vector<std::string>& command, const fs::path& log) {
-  std::vector<std::string> words = command;
-  std::vector<char*> arguments;
-  for (std::string& word : words) {
-    arguments.push_back(word.data());
-  }
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addchdir_np(&files, folder.c_str());
-  posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-  posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = -1;
-  const int error = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&files);
-  int status = 0;
-  while (error == 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return error != 0 ? -1 : WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-}
-
 std::string readBeginning(const fs::path& path) {
   constexpr std::size_t kMax = 1000;  // characters: the first errors
   std::ifstream in(path);
@@ -158,7 +130,7 @@ void compileSources(const SourceTree& tree, const fs::path& library) {
                  log = library.parent_path() / "compiler.log";
   writeStandardHeaders(headers);
   const std::vector<std::string> command = composeCommand(tree, build, headers, library);
-  const int status = runIn(tree.folder, command, log);
+  const int status = runProgram(command, tree.folder, log);
   if (status == -1 || status == 127) {
     fail(tree, "has no library for this platform, and its sources need a C compiler: '" + command[0] +
                    "' cannot be started");

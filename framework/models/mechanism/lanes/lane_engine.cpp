@@ -29,9 +29,10 @@ void LaneEngine::simulateWithDerivatives(const Eigen::Ref<const MatrixXd>& param
   }
 }
 
-/// None where there are events, which the implicit method does not look for.
+/// None where there are events, which the implicit method does not look for, or too many coordinates.
 std::vector<Index> LaneEngine::keepRetried(std::vector<Index> columns) const {
-  return programs_.getValues().hasEvents() ? std::vector<Index>{} : std::move(columns);
+  const LaneModel& model = programs_.getValues();
+  return model.hasEvents() || !model.isDifferentiated() ? std::vector<Index>{} : std::move(columns);
 }
 
 StiffRetry& LaneEngine::updStiffRetry() {

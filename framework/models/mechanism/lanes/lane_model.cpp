@@ -58,6 +58,17 @@ Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
   return outputs;
 }
 
+RestPrograms compileRest(const RecordedModel& recorded, bool with_derivatives,
+                         const program::InputCounts& counts) {
+  const Symbols parameters = getParameters(recorded, with_derivatives);
+  program::Recorder& recorder = *recorded.recorder;
+  RestPrograms programs;
+  programs.residuals = program::compile(recorder, collectRest(recorded, parameters), counts);
+  programs.pivot_count = static_cast<int>(recorded.rest_pivots.size());
+  programs.linearization = program::compile(recorder, recorded.linearization, counts);
+  return programs;
+}
+
 }  // namespace
 
 LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
@@ -77,7 +88,6 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   const Symbols output_delays(sampling.delays.begin(), sampling.delays.begin() + sampling.output_delay_count);
   model.loops = recorded.loops;
   model.prescribed = recorded.prescribed;
-  model.pivot_count = static_cast<int>(recorded.rest_pivots.size());
   model.problem = lanes::makeProblem(
       recorder,
       {model.counts, recorded.derivatives, recorded.pivots, sampling.outputs, output_delays,
@@ -85,8 +95,15 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
        recorded.events.transitions, recorded.events.input, recorded.projected, recorded.events.dips},
       directions);
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
-  model.rest = program::compile(recorder, collectRest(recorded, parameters), model.counts);
-  model.linearization = program::compile(recorder, recorded.linearization, model.counts);
+  if (recorded.record_with_rest) {
+    model.at_rest = std::make_shared<DeferredRest>(
+        [record = recorded.record_with_rest, with_derivatives, counts = model.counts] {
+          return compileRest(record(), with_derivatives, counts);
+        });
+  } else {
+    model.at_rest = std::make_shared<DeferredRest>(
+        [programs = compileRest(recorded, with_derivatives, model.counts)] { return programs; });
+  }
   return model;
 }
 

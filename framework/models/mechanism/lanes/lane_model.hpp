@@ -1,12 +1,44 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/recording/recorded_model.hpp"
 #include "kernels/lanes/problem.hpp"
 
 namespace twinmap {
+
+/// What equilibria and modes are found by.
+struct RestPrograms {
+  program::Program residuals;  ///< [rest_rates; rest_closures], rest_pivots, d residuals / d [coordinates;
+                               ///< states of first order] by columns; with directions also d residuals / d
+                               ///< parameters by columns
+  int pivot_count = 0;         ///< of rest_pivots
+  program::Program linearization;
+};
+
+/// Made when first asked for, by any thread.
+class DeferredRest {
+ public:
+  explicit DeferredRest(std::function<RestPrograms()> make) : make_(std::move(make)) {}
+
+  const RestPrograms& get() {
+    std::call_once(made_, [this] { programs_ = make_(); });
+    return programs_;
+  }
+
+ private:
+  std::function<RestPrograms()> make_;
+  std::once_flag made_;
+  RestPrograms programs_;
+};
+
+/// Of more coordinates neither equilibria nor modes nor implicit steps are offered. The derivatives by each
+/// coordinate and speed of 30 take 6 s and 2 GB to compile; both grow as the fourth power.
+constexpr int kMostDifferentiated = 30;
 
 /// The programs of a model that all threads share; immutable. Symbols: see RecordedModel.
 struct LaneModel {
@@ -19,16 +51,13 @@ struct LaneModel {
   lanes::Problem problem;         ///< the motion and its outputs
   program::Program start;  ///< initial states (of the first phase's inputs), events, delays; with directions
                            ///< their derivatives, one by one
-  program::Program rest;   ///< residuals [rest_rates; rest_closures], rest_pivots, d residuals / d
-                           ///< [coordinates; states of first order] by columns; with directions also d
-                           ///< residuals / d parameters by columns
-  program::Program linearization;
+  std::shared_ptr<DeferredRest> at_rest;
   int directions = 0;                      ///< 0, or all parameters
-  int pivot_count = 0;                     ///< of rest_pivots
   std::vector<int> prescribed;             ///< coordinates that move as signals say
   std::shared_ptr<const LoopModel> loops;  ///< null: none
 
   int getFirstOrderCount() const { return counts.states - 2 * coordinate_count - hidden_count; }
+  bool isDifferentiated() const { return coordinate_count <= kMostDifferentiated; }
   bool hasEvents() const { return problem.guard_count > 0; }
   int getClosureCount() const { return loops ? static_cast<int>(loops->plan.rows.size()) : 0; }
 };

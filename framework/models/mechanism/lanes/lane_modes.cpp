@@ -7,19 +7,22 @@ namespace twinmap {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-LaneModes::LaneModes(const LaneModel& model) : model_(model), program_(model.linearization) {
+LaneModes::LaneModes(const LaneModel& model) : model_(model) {
   if (model.loops) {
     assembly_.emplace(*model.loops);
   }
 }
 
 MatrixXd LaneModes::calcMatrix(const Eigen::Ref<const VectorXd>& parameters, const VectorXd& equilibrium) {
+  if (!program_) {
+    program_.emplace(model_.at_rest->get().linearization);
+  }
   const Eigen::Index n = model_.coordinate_count, all = model_.counts.states - model_.hidden_count;
   VectorXd states = VectorXd::Zero(model_.counts.states);  // the hidden ones take no part
   states.head(all) = insertSpeeds(equilibrium, VectorXd::Zero(n));
   MatrixXd matrix = MatrixXd::Zero(all, all);
   matrix.block(0, n, n, n).setIdentity();
-  matrix.bottomRows(all - n) = program_.calc({parameters, states}).reshaped(all - n, all);
+  matrix.bottomRows(all - n) = program_->calc({parameters, states}).reshaped(all - n, all);
   if (!assembly_) {
     return matrix;
   }

@@ -21,8 +21,8 @@ class LaneModes {
 
  private:
   const LaneModel& model_;
-  SingleProgram program_;
-  std::optional<Assembly> assembly_;  ///< with loops
+  std::optional<SingleProgram> program_;  ///< when first used
+  std::optional<Assembly> assembly_;      ///< with loops
 };
 
 }  // namespace twinmap

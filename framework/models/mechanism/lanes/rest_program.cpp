@@ -12,14 +12,18 @@ RestProgram::RestProgram(const LaneModel& model)
     : coordinates_(model.coordinate_count),
       count_(model.coordinate_count + model.getFirstOrderCount()),
       residuals_(count_ + model.getClosureCount()),
-      pivots_(model.pivot_count),
       directions_(model.directions),
       prescribed_(model.prescribed),
       singular_(getSingularReason(model)),
-      program_(model.rest) {}
+      at_rest_(model.at_rest) {}
 
 VectorXd RestProgram::calcAll(const VectorXd& equilibrium) {
-  const VectorXd all = program_.calc({parameters_, insertSpeeds(equilibrium, VectorXd::Zero(coordinates_))});
+  if (!program_) {
+    const RestPrograms& programs = at_rest_->get();
+    pivots_ = programs.pivot_count;
+    program_.emplace(programs.residuals);
+  }
+  const VectorXd all = program_->calc({parameters_, insertSpeeds(equilibrium, VectorXd::Zero(coordinates_))});
   if ((all.segment(residuals_, pivots_).array() <= 0.0)
           .any()) {  // false for NaN, which is not an equilibrium anyway
     throw SimulationFailure(singular_);

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+
 #include "framework/models/mechanism/equilibrium.hpp"
 #include "framework/models/mechanism/lanes/lane_model.hpp"
 #include "framework/models/mechanism/single_program.hpp"
@@ -27,11 +30,12 @@ class RestProgram : public RestAccelerations {
 
   Eigen::Index coordinates_, count_;  ///< count_: with the states of first order
   Eigen::Index residuals_;            ///< with the conditions of loops
-  Eigen::Index pivots_, directions_;
+  Eigen::Index pivots_ = 0, directions_;
   std::vector<int> prescribed_;
   const char* singular_;
   Eigen::VectorXd parameters_;
-  SingleProgram program_;
+  std::shared_ptr<DeferredRest> at_rest_;
+  std::optional<SingleProgram> program_;  ///< when first used
 };
 
 }  // namespace twinmap

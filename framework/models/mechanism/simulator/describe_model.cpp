@@ -116,8 +116,11 @@ std::vector<std::string> describeModel(ModelContext& context, const LaneModel* l
     lines.push_back(describeLine("degrees of freedom", std::to_string(coordinates - prescribed)));
   }
   lines.push_back(describeLine("states", std::to_string(context.names.getStateNames().size())));
-  if (lanes != nullptr) {
+  if (lanes != nullptr && lanes->isDifferentiated()) {
     appendRest(context, *lanes, box_center, lines);
+  } else if (lanes != nullptr) {
+    lines.push_back(
+        describeLine("equilibrium", fmt::format("is sought of at most {} coordinates", kMostDifferentiated)));
   }
   return lines;
 }

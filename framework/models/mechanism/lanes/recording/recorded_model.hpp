@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -31,9 +32,11 @@ struct RecordedModel {
   Symbols pivots;             ///< not positive where the mass matrix or a loop is singular
   RecordedSampling sampling;  ///< with the outputs; only the rates of its states are also in `derivatives`
   RecordedEvents events;
-  Symbols initial;     ///< states at t = 0; of parameters alone, and what is prescribed of the first phase's
-                       ///< inputs; without equilibrium. With loops as the file gives them, and rates of
-                       ///< coordinates in the place of speeds: Assembly's
+  Symbols initial;  ///< states at t = 0; of parameters alone, and what is prescribed of the first phase's
+                    ///< inputs; without equilibrium. With loops as the file gives them, and rates of
+                    ///< coordinates in the place of speeds: Assembly's
+  /// Where what follows, at rest, is not recorded yet: the same once more, with it.
+  std::function<RecordedModel()> record_with_rest;
   Symbols rest_rates;  ///< at rest and t = 0 without excitation: accelerations, then rates of the states of
                        ///< first order
   Symbols rest_closures;  ///< distances from the independent conditions of loops, as accelerations
@@ -47,7 +50,8 @@ struct RecordedModel {
   Symbols relaxed;  ///< with loops: derivatives that lead to the conditions, for implicit integration
 };
 
-/// Writes a model down. `loops`: makeLoopModel() of the model, or null where it has no constraints. Cost:
+/// Writes a model down. `loops`: makeLoopModel() of the model, or null where it has no constraints. Models of
+/// many coordinates that do not begin at rest are recorded without it; they must outlive the record. Cost:
 /// some milliseconds.
 RecordedModel recordModel(const ModelSpec& model, const SystemNames& names,
                           std::shared_ptr<const LoopModel> loops = nullptr);
