@@ -85,6 +85,18 @@ class LoadFriction(unittest.TestCase):
         at = {round(t, 2): (q, v) for t, q, v in rows}
         self.assertGreater(at[4.9][1], 0.2)  # 2.5 > 1 + 1.25: 0.25 N over 0.9 s
 
+    def test_friction_that_holds_for_an_instant_lets_go(self):
+        # q'' = t - 1 until it halts, just before the force exceeds the level, then again from there
+        text = BLOCK.replace("{{coordinate: q, force: push}}", "{{coordinate: q, force: rise*t}}").replace(
+            "constants: {{", "constants: {{rise: {{value: 1, unit: N/s}}, "
+        )
+        text = text.format(friction="{coordinate: q, model: coulomb, coulomb: level}", push=1)
+        for less in (1e-8, 1e-12, 1e-13, 1e-14, 3e-15, 1e-15, 5e-16, 0, -1e-15, -1e-14):
+            rows = self.simulate(text, f"initial.speeds.q={0.5 - less!r}", "simulation.duration=5")
+            for t, q, v in rows:
+                self.assertAlmostEqual(v, (t - 1) ** 2 / 2, delta=2 * abs(less) + 1e-9)
+                self.assertAlmostEqual(q, ((t - 1) ** 3 + 1) / 6, delta=10 * abs(less) + 1e-9)
+
     def test_a_level_is_checked_for_names_units_and_sign(self):
         for friction, message in (
             (STICKING.replace("slope*q", "slope*z"), "unknown name 'z'"),
