@@ -13,7 +13,8 @@ namespace {
 constexpr int kLooks = 4;
 constexpr double kLookedAt[kLooks] = {0.25, 0.5, 0.75, 1.0}, kApart = 0.25;
 constexpr int kMostTries = 300;     // 100 of them halve the bracket, beyond what a double resolves
-constexpr int kMostAtOnce = 100;    // far more than elements that meet at one time
+constexpr int kManyAtOnce = 100;    // far more than elements that meet at one time
+constexpr int kDoublings = 40;      // of the shortest step, behind that many: a fiftieth of a second at 10 s
 constexpr double kWidth = 0x1p-51;  // of a bracket, in parts of the time: two units in the last place
 
 /// Where a parabola through three successive looks is below 0, in parts of the step: between where it gets
@@ -132,7 +133,9 @@ void LanePacket::narrow(unsigned lanes) {
 }
 
 /// The next step is no longer than the time since the last event, so that flights between impacts that follow
-/// ever faster are seen.
+/// ever faster are seen. Rounding may leave the speed on the wrong side of 0 where a force barely exceeds
+/// what friction holds. Each such step ends with an event then, and behind many of them steps grow until the
+/// speed has turned.
 void LanePacket::endStepAtEvent(int lane) {
   Lane& l = lanes_[lane];
   for (int row = 0; row < arrays_.rows; ++row) {
@@ -142,7 +145,9 @@ void LanePacket::endStepAtEvent(int lane) {
   const double smallest = kSmallestStep * std::max(std::abs(time), kSmallestTime);
   const double apart = time - l.event_time;
   l.events_at_once = apart > smallest ? 0 : l.events_at_once;
-  arrays_.proposed[lane] = std::min(arrays_.proposed[lane], std::max(apart, 2.0 * smallest));
+  const int doublings = std::max(0, l.events_at_once - kManyAtOnce);
+  arrays_.proposed[lane] =
+      std::min(arrays_.proposed[lane], std::max(apart, std::ldexp(smallest, 1 + doublings)));
   arrays_.end[lane] = l.event_time = time;
   std::fill(l.fired.begin(), l.fired.end(), 0);
   int due = 0;
@@ -156,7 +161,7 @@ void LanePacket::endStepAtEvent(int lane) {
 void LanePacket::startEvent(int lane, int event) {
   Lane& l = lanes_[lane];
   ++l.result.events;
-  if (++l.events_at_once > kMostAtOnce) {
+  if (++l.events_at_once > kManyAtOnce + kDoublings) {
     return fail(lane, Outcome::kEventsStuck);
   }
   l.event = event;

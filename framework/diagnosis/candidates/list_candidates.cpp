@@ -21,6 +21,8 @@ void enlarge(const CoordinateSizes& by, std::vector<CoordinateSizes>& coordinate
   same->reach = std::max(same->reach, by.reach);
   same->speed = std::max(same->speed, by.speed);
   same->force = std::max(same->force, by.force);
+  same->gravity = std::max(same->gravity, by.gravity);
+  same->is_weighed = same->is_weighed || by.is_weighed;
 }
 
 /// `to` is as large as `from`, each number of it.

@@ -1,51 +1,113 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <functional>
 #include <string>
+#include <vector>
 
 #include "framework/base/text/number_text.hpp"
-#include "framework/diagnosis/candidates/replace_name.hpp"
+#include "framework/diagnosis/candidates/split_sum.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/model/gravity_name.hpp"
 
 namespace twinmap {
 namespace {
 
-bool isSignal(const ModelSpec& model, const std::string& name) {
-  return std::any_of(model.excitation.begin(), model.excitation.end(),
-                     [&](const SignalSpec& signal) { return signal.name.text == name; });
+template <class T>
+bool isAmong(const std::vector<T>& items, const std::string& name) {
+  return std::any_of(items.begin(), items.end(), [&](const T& one) { return one.name.text == name; });
 }
 
-/// A coordinate or its speed.
-bool isOfMotion(const ModelSpec& model, const std::string& name) {
-  return std::any_of(model.system.bodies.begin(), model.system.bodies.end(), [&](const BodySpec& body) {
-    const std::vector<Name>& names = body.joint.coordinates;
-    return std::any_of(names.begin(), names.end(),
-                       [&](const Name& one) { return name == one.text || name == one.text + "_dot"; });
-  });
+/// What an expression depends on.
+struct Dependence {
+  bool on_drive = false, on_coordinates = false, on_speeds = false;
+};
+
+void addDependence(const Dependence& more, Dependence& all) {
+  all.on_drive = all.on_drive || more.on_drive;
+  all.on_coordinates = all.on_coordinates || more.on_coordinates;
+  all.on_speeds = all.on_speeds || more.on_speeds;
 }
 
-/// The force laws on a coordinate, with 0 in the place of what `is_left_out` names; "" where nothing is left
-/// that varies.
-std::string writeLaws(const ModelSpec& model, const std::string& coordinate,
-                      const std::function<bool(const std::string& name)>& is_left_out) {
-  std::string sum;
-  for (const ForceLaw<Expression>& law : model.system.elements.get<ForceLaw>()) {
-    std::string kept = law.force.text;
-    bool varies = false;
-    for (const std::string& name : getUsedNames(law.force)) {
-      if (is_left_out(name)) {
-        kept = replaceName(kept, name, "0");
-      } else {
-        varies = varies || isOfMotion(model, name) || isSignal(model, name);
+/// A drive's force is of signals and their rates, of what controllers write, of states such as currents, or
+/// of time.
+bool isOfDrive(const ModelSpec& model, const std::string& name) {
+  const std::vector<ControllerSpec>& controllers = model.system.controllers;
+  const auto is_rate = [&](const SignalSpec& signal) {
+    return name == signal.name.text + "_dot" || name == signal.name.text + "_ddot";
+  };
+  return name == "t" || isAmong(model.excitation, name) || isAmong(model.system.states, name) ||
+         std::any_of(model.excitation.begin(), model.excitation.end(), is_rate) ||
+         std::any_of(controllers.begin(), controllers.end(),
+                     [&](const ControllerSpec& one) { return isAmong(one.writes, name); });
+}
+
+const NamedExpression* findNamed(const ModelSpec& model, const std::string& name) {
+  const std::vector<NamedExpression>& named = model.system.expressions;
+  const auto found = std::find_if(named.begin(), named.end(),
+                                  [&](const NamedExpression& one) { return one.name.text == name; });
+  return found == named.end() ? nullptr : &*found;
+}
+
+Dependence findDependence(const ModelSpec& model, const Expression& expression) {
+  Dependence all;
+  for (const std::string& name : getUsedNames(expression)) {
+    if (const NamedExpression* named = findNamed(model, name)) {
+      addDependence(findDependence(model, named->value), all);
+      continue;
+    }
+    all.on_drive = all.on_drive || isOfDrive(model, name);
+    for (const BodySpec& body : model.system.bodies) {
+      for (const Name& coordinate : body.joint.coordinates) {
+        all.on_coordinates =
+            all.on_coordinates || name == coordinate.text || name == coordinate.text + kGravitySuffix;
+        all.on_speeds = all.on_speeds || name == coordinate.text + "_dot";
       }
     }
-    if (law.coordinate.text == coordinate && varies) {
-      sum += (sum.empty() ? "(" : " + (") + kept + ")";
+  }
+  return all;
+}
+
+/// What acts on a coordinate: what it carries, and what drives it. Sums; "" for nothing.
+struct Acting {
+  std::string load, drive;
+};
+
+void appendSummand(std::string& sum, const std::string& summand) {
+  sum += (sum.empty() ? "" : " + ") + summand;
+}
+
+/// Of a force law; what it says of speeds alone is neither.
+void addLaw(const ModelSpec& model, const std::string& force, Acting& acting) {
+  for (const std::string& summand : splitSum(force)) {
+    const bool is_negative = summand.rfind("-(", 0) == 0;
+    const NamedExpression* named =
+        findNamed(model, is_negative ? summand.substr(2, summand.size() - 3) : summand);
+    if (named != nullptr) {
+      addLaw(model, is_negative ? "-(" + named->value.text + ")" : named->value.text, acting);
+      continue;
+    }
+    const Dependence on = findDependence(model, {summand, {}});
+    if (on.on_drive) {
+      appendSummand(acting.drive, summand);
+    } else if (on.on_coordinates && !on.on_speeds) {
+      appendSummand(acting.load, summand);
     }
   }
-  return sum;
+}
+
+/// A weight that does not change loads as dry friction does.
+Acting findActing(const ModelSpec& model, const CoordinateSizes& coordinate) {
+  Acting acting;
+  for (const ForceLaw<Expression>& law : model.system.elements.get<ForceLaw>()) {
+    if (law.coordinate.text == coordinate.name) {
+      addLaw(model, law.force.text, acting);
+    }
+  }
+  if (coordinate.is_weighed || (coordinate.gravity > 0.0 && !acting.load.empty())) {
+    appendSummand(acting.load, coordinate.name + kGravitySuffix);
+  }
+  return acting;
 }
 
 bool slides(const Friction<Expression>& friction, const std::string& coordinate) {
@@ -91,15 +153,13 @@ TermCandidate makeLoadCandidate(const char* kind, const char* of, const Coordina
 std::vector<TermCandidate> listLoadCandidates(const ModelSpec& model, const ModelSizes& sizes) {
   std::vector<TermCandidate> candidates;
   for (const CoordinateSizes& coordinate : sizes.coordinates) {
-    const std::string load =
-        writeLaws(model, coordinate.name, [&](const std::string& name) { return isSignal(model, name); });
-    const std::string drive =
-        writeLaws(model, coordinate.name, [&](const std::string& name) { return isOfMotion(model, name); });
-    if (!load.empty()) {
-      candidates.push_back(makeLoadCandidate("load_friction", "load", coordinate, load));
+    const Acting acting = findActing(model, coordinate);
+    if (!acting.load.empty()) {
+      candidates.push_back(makeLoadCandidate("load_friction", "load", coordinate, acting.load));
     }
-    if (!drive.empty()) {
-      candidates.push_back(makeLoadCandidate("drive_friction", "the drive's force", coordinate, drive));
+    if (!acting.drive.empty()) {
+      candidates.push_back(
+          makeLoadCandidate("drive_friction", "the drive's force", coordinate, acting.drive));
     }
   }
   return candidates;

@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
+#include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/candidates/observed_motion.hpp"
 #include "framework/diagnosis/candidates/replace_name.hpp"
 #include "framework/experiment/expression/named_values.hpp"
+#include "framework/experiment/model/gravity_name.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -32,9 +34,20 @@ std::vector<std::string> listForces(const CandidateSpec& candidate) {
   return forces;
 }
 
+std::string nameGravity(const ForcedCoordinate& coordinate) {
+  return coordinate.name + kGravitySuffix;
+}
+
+/// Whether it acts at all, and its force can be named.
+bool hasGravity(const ModelSpec& model, const ModelSizes& sizes, const ForcedCoordinate& coordinate) {
+  return sizes.gravity.norm() > 0.0 &&
+         makeParameterName(model, nameGravity(coordinate)) == nameGravity(coordinate);
+}
+
 /// The model with each coordinate and its speed as outputs, then those of its own, its signals, and the
-/// forces of candidates.
-ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<ForcedCoordinate>& coordinates) {
+/// forces of candidates and of gravity.
+ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<ForcedCoordinate>& coordinates,
+                       const ModelSizes& sizes) {
   const ModelSpec& model = experiment.model;
   ModelSpec observed = model;
   observed.outputs.clear();
@@ -53,6 +66,11 @@ ModelSpec observeSizes(const ExperimentSpec& experiment, const std::vector<Force
   for (const CandidateSpec& candidate : experiment.candidates) {
     for (const std::string& force : listForces(candidate)) {
       observeForce(candidate.name.text, {force, candidate.force.where}, observed.outputs);
+    }
+  }
+  for (const ForcedCoordinate& coordinate : coordinates) {
+    if (hasGravity(model, sizes, coordinate)) {
+      observeForce(nameGravity(coordinate), {nameGravity(coordinate), {}}, observed.outputs);
     }
   }
   return observed;
@@ -117,6 +135,17 @@ void setCoordinateSizes(const std::vector<ForcedCoordinate>& forced, const Matri
   }
 }
 
+/// Of rounding there is no force.
+void setGravity(const std::string& name, const VectorXd& forces, ModelSizes& sizes) {
+  const double least = 1e-9 * sizes.mass * sizes.gravity.norm(), largest = forces.cwiseAbs().maxCoeff();
+  for (CoordinateSizes& coordinate : sizes.coordinates) {
+    if (coordinate.name == name && largest > least) {
+      coordinate.gravity = largest;
+      coordinate.is_weighed = forces.maxCoeff() - forces.minCoeff() > least;
+    }
+  }
+}
+
 }  // namespace
 
 ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& point) {
@@ -125,7 +154,7 @@ ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& poin
   setBodySizes(model, nameValues(model, point), sizes);
   const std::vector<ForcedCoordinate> forced = listForcedCoordinates(model.system);
   const VectorXd times = VectorXd::LinSpaced(kSizeSamples, 0.0, model.simulation.duration);
-  const MatrixXd outputs = simulateOutputs(observeSizes(experiment, forced), times, point);
+  const MatrixXd outputs = simulateOutputs(observeSizes(experiment, forced, sizes), times, point);
   setCoordinateSizes(forced, outputs, model.simulation.duration, sizes);
   auto column = static_cast<Index>(2 * forced.size());
   for (std::size_t o = 0; o < model.outputs.size(); ++o) {
@@ -139,6 +168,11 @@ ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& poin
     for (std::size_t k = 0; k < listForces(candidate).size(); ++k) {
       sizes.own_forces.back().push_back(outputs.col(column++).norm() /
                                         std::sqrt(static_cast<double>(kSizeSamples)));
+    }
+  }
+  for (const ForcedCoordinate& coordinate : forced) {
+    if (hasGravity(model, sizes, coordinate)) {
+      setGravity(coordinate.name, outputs.col(column++), sizes);
     }
   }
   return sizes;

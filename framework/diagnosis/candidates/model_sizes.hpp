@@ -12,9 +12,11 @@ namespace twinmap {
 struct CoordinateSizes {
   std::string name;
   bool is_angle = false;
-  double reach = 0.0;  ///< max |q|, m or rad
-  double speed = 0.0;  ///< max |q'|
-  double force = 0.0;  ///< of the size of inertia times rms q'', N or N m
+  double reach = 0.0;       ///< max |q|, m or rad
+  double speed = 0.0;       ///< max |q'|
+  double force = 0.0;       ///< of the size of inertia times rms q'', N or N m
+  double gravity = 0.0;     ///< largest force of gravity on it
+  bool is_weighed = false;  ///< whether that force varies
 };
 
 /// The largest |x|, of the trial where it is largest and of the one where it is least.

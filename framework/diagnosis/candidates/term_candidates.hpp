@@ -22,8 +22,9 @@ constexpr double kReachOfLimits = 2.0;
 /// Forces on each coordinate (damping, friction, springs, stops, a constant force) and between two of a kind.
 std::vector<TermCandidate> listForceCandidates(const ModelSizes& sizes);
 
-/// Friction that grows with what force laws exert on the coordinate without signals (load), and without
-/// motion (the drive), of each that has some: the level of the model's friction, where there is one.
+/// Friction that grows with what each coordinate carries: gravity, and what its force laws say of coordinates
+/// (load). And with what drives it: what they say of signals, states and controllers. Both raise the level of
+/// the model's friction, where there is one.
 std::vector<TermCandidate> listLoadCandidates(const ModelSpec& model, const ModelSizes& sizes);
 
 /// Forces with states on each coordinate: friction that is a spring before it slips, hysteresis, a mass on a

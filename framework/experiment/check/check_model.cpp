@@ -11,6 +11,7 @@
 #include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/expression/expression_tree.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/model/gravity_name.hpp"
 #include "framework/experiment/model/joint_type.hpp"
 #include "framework/experiment/model/named_forces.hpp"
 #include "framework/experiment/model/output_units.hpp"
@@ -187,6 +188,7 @@ class ModelCheck {
     }
     fields_.dynamics.defineTime();
     declareSignalRates();
+    declareGravity();
     declareStates();
     for (const NamedExpression& named : model_.system.expressions) {
       fields_.dynamics.define(named.name, named.value);
@@ -197,12 +199,23 @@ class ModelCheck {
   void declareSignalRates() {
     for (const SignalSpec& signal : model_.excitation) {
       const std::string unit = makeRateUnit(signal.unit);
-      declareRate({signal.name.text + "_dot", signal.name.where}, unit);
-      declareRate({signal.name.text + "_ddot", signal.name.where}, makeRateUnit(unit));
+      declareUnlessTaken({signal.name.text + "_dot", signal.name.where}, unit);
+      declareUnlessTaken({signal.name.text + "_ddot", signal.name.where}, makeRateUnit(unit));
     }
   }
 
-  void declareRate(const Name& rate, const std::string& unit) {
+  /// The force of gravity on a coordinate: <coordinate>_gravity.
+  void declareGravity() {
+    for (const Coordinate& coordinate : fields_.coordinates) {
+      if (coordinate.takes_forces) {
+        declareUnlessTaken({coordinate.name.text + kGravitySuffix, coordinate.name.where},
+                           coordinate.unit == "m" ? getForceUnit(CoordinateKind::kTranslation)
+                                                  : getForceUnit(CoordinateKind::kRotation));
+      }
+    }
+  }
+
+  void declareUnlessTaken(const Name& rate, const std::string& unit) {
     constexpr double kSomeRate = 0.83;
     const auto has = [&](const auto& items) {
       return std::any_of(items.begin(), items.end(),

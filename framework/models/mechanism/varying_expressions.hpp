@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/model/gravity_name.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
@@ -87,6 +88,29 @@ inline std::vector<std::string> listUsedNames(const ModelSpec& model) {
   return used;
 }
 
+/// Whether an expression may use the force of gravity on a coordinate (<coordinate>_gravity), which is
+/// computed for these alone.
+inline bool mayUseGravity(const ModelSpec& model) {
+  bool may = false;
+  const ExpressionAction look = [&may](const Expression& expression) {
+    may = may || expression.text.find(kGravitySuffix) != std::string::npos;
+  };
+  forEachForceExpression(model.system, look);
+  forEachOutputExpression(model.outputs, look);
+  for (const NamedExpression& named : model.system.expressions) {
+    look(named.value);
+  }
+  return may;
+}
+
+/// Whether a state or a named expression is called so.
+inline bool isOwnName(const SystemSpec& system, const std::string& name) {
+  const auto has = [&](const auto& items) {
+    return std::any_of(items.begin(), items.end(), [&](const auto& item) { return item.name.text == name; });
+  };
+  return has(system.states) || has(system.expressions);
+}
+
 /// In expressions, of all signals those of their rates (<signal>_dot), then, for two orders, of the rates of
 /// these (<signal>_ddot).
 inline std::vector<std::string> nameSignalRates(const std::vector<SignalSpec>& signals, int orders) {
@@ -103,14 +127,11 @@ inline std::vector<std::string> nameSignalRates(const std::vector<SignalSpec>& s
 /// state or a named expression is called is theirs.
 inline int countSignalRates(const ModelSpec& model) {
   const std::vector<std::string> used = listUsedNames(model);
-  const auto isOwn = [&](const auto& items, const std::string& name) {
-    return std::any_of(items.begin(), items.end(), [&](const auto& item) { return item.name.text == name; });
-  };
   const std::vector<std::string> names = nameSignalRates(model.excitation, 2);
   int orders = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const bool uses = std::find(used.begin(), used.end(), names[i]) != used.end() &&
-                      !isOwn(model.system.states, names[i]) && !isOwn(model.system.expressions, names[i]);
+    const bool uses =
+        std::find(used.begin(), used.end(), names[i]) != used.end() && !isOwnName(model.system, names[i]);
     orders = uses ? std::max(orders, i < model.excitation.size() ? 1 : 2) : orders;
   }
   return orders;

@@ -85,6 +85,62 @@ class LoadFriction(unittest.TestCase):
         at = {round(t, 2): (q, v) for t, q, v in rows}
         self.assertGreater(at[4.9][1], 0.2)  # 2.5 > 1 + 1.25: 0.25 N over 0.9 s
 
+    def test_a_level_may_depend_on_the_force_of_gravity(self):
+        text = (
+            BLOCK.replace("bodies:", "gravity: [6, 0, -8]\n  bodies:")
+            .replace("mass: 1, joint", "mass: 2, center_of_mass: [0, 0.1, 0], joint")
+            .replace("type: slider, ", "type: slider, axis: [1, 0, 0], ")
+        )
+        friction = "{coordinate: q, model: regularised, onset_speed: 0.1, coulomb: '%s'}"
+        for engine in ("lanes", "simbody"):
+            known, named = (
+                self.simulate(text.format(friction=friction % level, push=3), f"simulation.engine={engine}")
+                for level in ("level + 0.3*12", "level + 0.3*abs(q_gravity)")
+            )
+            for one, other in zip(sum(known, []), sum(named, [])):
+                self.assertAlmostEqual(one, other, delta=1e-12)
+
+    def test_the_force_of_gravity_on_a_coordinate_is_of_all_that_its_joint_carries(self):
+        text = """
+name: arm
+parameters: {m: {bounds: [1, 3], unit: kg}}
+system:
+  gravity: [0, -9.81, 0]
+  bodies:
+    upper: {mass: m, center_of_mass: [0, -0.3, 0], inertia: 0.1, joint: {type: pin, coordinates: [a]}}
+    lower:
+      mass: 1.5
+      center_of_mass: [0, -0.2, 0]
+      inertia: 0.05
+      joint: {type: pin, parent: upper, coordinates: [b], in_parent: {point: [0, -0.6, 0]}}
+initial: {coordinates: {a: 0.7, b: -1.9}}
+outputs:
+  a: {coordinate: a}
+  b: {coordinate: b}
+  ga: {expression: a_gravity, unit: N m}
+  gb: {expression: b_gravity, unit: N m}
+simulation: {duration: 1}
+features: [{samples: {outputs: [a], start: 0, interval: 0.1, count: 11}}]
+noise: {stddev: {a: 1, b: 1, ga: 1, gb: 1}}
+"""
+        for engine in ("lanes", "simbody"):
+            for _, a, b, ga, gb in self.simulate(text, f"simulation.engine={engine}", "parameters.m=2"):
+                lower = -1.5 * 9.81 * 0.2 * sin(a + b)
+                self.assertAlmostEqual(gb, lower, delta=1e-12)
+                self.assertAlmostEqual(ga, lower - (2 * 0.3 + 1.5 * 0.6) * 9.81 * sin(a), delta=1e-12)
+
+    def test_friction_that_holds_for_an_instant_lets_go(self):
+        # q'' = t - 1 until it halts, just before the force exceeds the level, then again from there
+        text = BLOCK.replace("{{coordinate: q, force: push}}", "{{coordinate: q, force: rise*t}}").replace(
+            "constants: {{", "constants: {{rise: {{value: 1, unit: N/s}}, "
+        )
+        text = text.format(friction="{coordinate: q, model: coulomb, coulomb: level}", push=1)
+        for less in (1e-8, 1e-12, 1e-13, 1e-14, 3e-15, 1e-15, 5e-16, 0, -1e-15, -1e-14):
+            rows = self.simulate(text, f"initial.speeds.q={0.5 - less!r}", "simulation.duration=5")
+            for t, q, v in rows:
+                self.assertAlmostEqual(v, (t - 1) ** 2 / 2, delta=2 * abs(less) + 1e-9)
+                self.assertAlmostEqual(q, ((t - 1) ** 3 + 1) / 6, delta=10 * abs(less) + 1e-9)
+
     def test_a_level_is_checked_for_names_units_and_sign(self):
         for friction, message in (
             (STICKING.replace("slope*q", "slope*z"), "unknown name 'z'"),
@@ -174,9 +230,14 @@ class Servo:
 
 
 class MissingLoad(unittest.TestCase):
-    def name_terms(self, servo):
+    def name_terms(self, servo, of_body=False):
         with tempfile.TemporaryDirectory() as folder:
             servo.write(Path(folder))
+            if of_body:
+                file = Path(folder) / "servo.yaml"
+                text = file.read_text().replace("system:", "system:\n  gravity: [0, -9.81, 0]")
+                text = text.replace("mass: 1, ", "mass: 2, center_of_mass: [0, -W/(2*9.81), 0], ")
+                file.write_text(text.replace("force: u - W*sin(q)", "force: u"))
             result = call("diagnose", Path(folder) / "servo.yaml", Path(folder) / "m.csv", "--json")
         steps = json.loads(result.stdout)["steps"]
         return [step["candidates"][0]["term"] for step in steps if step["found"]]
@@ -184,6 +245,9 @@ class MissingLoad(unittest.TestCase):
     def test_a_servo_without_it_is_told_so(self):
         for seed in (1, 2):
             self.assertEqual(self.name_terms(Servo(seed)), ["load_friction.q"])
+
+    def test_gravity_of_its_body_is_its_load(self):
+        self.assertEqual(self.name_terms(Servo(2), of_body=True), ["load_friction.q"])
 
     def test_of_a_servo_that_carries_its_weight_without_friction_nothing_is_missing(self):
         self.assertEqual(self.name_terms(Servo(1, carries=False)), [])

@@ -8,6 +8,7 @@
 #include "framework/data/features/experiment_features.hpp"
 #include "framework/diagnosis/candidates/augment.hpp"
 #include "framework/diagnosis/candidates/replace_name.hpp"
+#include "framework/diagnosis/candidates/split_sum.hpp"
 #include "framework/experiment/check/check_experiment.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
@@ -41,6 +42,43 @@ const TermCandidate& find(const std::vector<TermCandidate>& candidates, const st
 TEST(ReplaceName, ReplacesWholeWords) {
   EXPECT_EQ(replaceName("F - k*F2 + dF*F_x/F", "F", "(2*F)"), "(2*F) - k*F2 + dF*F_x/(2*F)");
   EXPECT_EQ(replaceName("1e3*e3", "e3", "x"), "1e3*x");
+}
+
+TEST(SplitSum, FindsSummandsWithTheirSigns) {
+  using Sum = std::vector<std::string>;
+  EXPECT_EQ(splitSum("u - W*sin(q - 1)"), (Sum{"u", "-(W*sin(q - 1))"}));
+  EXPECT_EQ(splitSum("-(a - (b + c)) + 2e-3*d"), (Sum{"-(a)", "b", "c", "2e-3*d"}));
+  EXPECT_EQ(splitSum("k*-q^-2 - - x"), (Sum{"k*-q^-2", "x"}));
+  EXPECT_EQ(splitSum("(a + b)*(c + d)"), (Sum{"(a + b)*(c + d)"}));
+  EXPECT_EQ(splitSum("q > 0 ? a - b : c"), (Sum{"q > 0 ? a - b : c"}));
+  EXPECT_EQ(splitSum("u - (q > 0 ? a - b : c)"), (Sum{"u", "-(q > 0 ? a - b : c)"}));
+  EXPECT_EQ(splitSum("F1e-F2"), (Sum{"F1e", "-(F2)"}));
+}
+
+/// The level of the friction on a coordinate with a candidate of coefficient c.
+std::string writeLevel(const ExperimentSpec& experiment, const std::string& term) {
+  const TermCandidate candidate = find(listAtCenter(experiment), term);
+  ModelSpec model = experiment.model;
+  candidate.add(model, "c", {});
+  return model.system.elements.get<Friction>().front().coulomb.text;
+}
+
+// A servo on a position loop: gravity of its body and a spring are what it carries, the loop drives it.
+TEST(Candidates, TellWhatACoordinateCarriesFromWhatDrivesIt) {
+  const std::string file = findMechanism("released_pendulum");
+  const std::string friction = "system.friction=[{coordinate: angle, model: coulomb, coulomb: 0.01}]";
+  const std::string signal = "excitation={r: {unit: rad, sines: [{amplitude: 1, frequency: 1}]}}";
+  const ExperimentSpec hanging = loadExperiment(file, {friction});
+  EXPECT_EQ(writeLevel(hanging, "load_friction.angle"), "max(0.01 + c*abs(angle_gravity), 0)");
+  const std::vector<TermCandidate> candidates = listAtCenter(hanging);
+  EXPECT_TRUE(std::none_of(candidates.begin(), candidates.end(),
+                           [](const TermCandidate& one) { return one.term == "load_friction.x"; }));
+  const ExperimentSpec servo = loadExperiment(
+      file, {friction, signal, "system.expressions={drive: 0.3*(r - angle) - 0.1*sin(angle)}",
+             "system.force_laws=[{coordinate: angle, force: drive - 0.01*angle_dot - 0.2*angle}]"});
+  EXPECT_EQ(writeLevel(servo, "load_friction.angle"),
+            "max(0.01 + c*abs(-(0.1*sin(angle)) + -(0.2*angle) + angle_gravity), 0)");
+  EXPECT_EQ(writeLevel(servo, "drive_friction.angle"), "max(0.01 + c*abs(0.3*(r - angle)), 0)");
 }
 
 // Units, names and references of each are right, alone and all together.

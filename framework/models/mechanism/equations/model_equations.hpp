@@ -5,6 +5,7 @@
 
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/models/mechanism/equations/calc_system_values.hpp"
+#include "framework/models/mechanism/equations/gravity_force.hpp"
 #include "framework/models/mechanism/equations/switches.hpp"
 #include "framework/models/mechanism/varying_expressions.hpp"
 
@@ -61,9 +62,23 @@ std::vector<TouchMotion<S>> calcTouches(const SystemValues<S>& system, const Mod
   return touches;
 }
 
-/// The values that expressions of a state may use.
+/// The forces of gravity on coordinates that take forces (<coordinate>_gravity), unless something else has
+/// the name.
 template <class S>
-NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, const ModelState<S>& state,
+void nameGravity(const SystemNames& system, const SystemValues<S>& values,
+                 const std::vector<BodyMotion<S>>& motions, NamedValues<S>& names) {
+  for (std::size_t i = 0; i < system.getCoordinates().size(); ++i) {
+    const std::string name = system.getCoordinateNames()[i] + kGravitySuffix;
+    if (system.getCoordinates()[i].traits.takes_forces && !names.contains(name)) {
+      names.define(name, calcGravityForce(values, motions, system.getCoordinates()[i]));
+    }
+  }
+}
+
+/// The values that expressions of a state may use. `names`: parameters and constants; `values` of them.
+template <class S>
+NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, const SystemValues<S>& values,
+                         const std::vector<BodyMotion<S>>& motions, const ModelState<S>& state,
                          const std::vector<S>& rates, NamedValues<S> names) {
   const std::vector<std::string>& coordinates = system.getCoordinateNames();
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
@@ -79,6 +94,9 @@ NamedValues<S> nameState(const ModelSpec& model, const SystemNames& system, cons
     if (!names.contains(signal_rates[i])) {
       names.define(signal_rates[i], state.signal_rates[i]);
     }
+  }
+  if (mayUseGravity(model)) {
+    nameGravity(system, values, motions, names);
   }
   for (std::size_t i = 0; i < state.states.size(); ++i) {
     names.set(system.getStateNames()[i], state.states[i]);
@@ -148,7 +166,7 @@ ModelMotion<S> calcModelMotion(const ModelSpec& model, const SystemNames& system
   motion.rates = calcRates(values, state.coordinates, state.speeds);
   motion.bodies = calcMotions(values, state.coordinates, state.speeds);
   Loads<S> loads = calcLoads(model.system, values, motion.bodies, state, motion.rates,
-                             nameState(model, system, state, motion.rates, names));
+                             nameState(model, system, values, motion.bodies, state, motion.rates, names));
   motion.state_rates = std::move(loads.state_rates);
   LinearSystem<S> equations =
       calcEquationsOfMotion(values, motion.bodies, loads.on_bodies, std::move(loads.on_speeds));

@@ -97,13 +97,34 @@ void LoadedSystem::readMotion(const SimTK::State& state) {
   }
 }
 
+/// Of coordinates that take forces, whose speeds are their rates.
+void LoadedSystem::readGravity(const SimTK::State& state) {
+  const SimTK::SimbodyMatterSubsystem& matter = tree_.getMatter();
+  SimTK::Vector_<SimTK::SpatialVec> weights(static_cast<int>(motions_.size()),
+                                            SimTK::SpatialVec(SimTK::Vec3(0), SimTK::Vec3(0)));
+  for (int i = 1; i < weights.size(); ++i) {
+    const SimTK::SpatialInertia& inertia = tree_.getBody(i).getBodySpatialInertiaInGround(state);
+    const SimTK::Vec3 weight = inertia.getMass() * getGravity();
+    weights[i] = SimTK::SpatialVec(inertia.getMassCenter() % weight, weight);
+  }
+  SimTK::Vector on_speeds;
+  matter.multiplyBySystemJacobianTranspose(state, weights, on_speeds);
+  gravity_.resize(coordinates_.size());
+  for (std::size_t i = 0; i < gravity_.size(); ++i) {
+    gravity_[i] = on_speeds[tree_.getSlots()[i].u];
+  }
+}
+
 const SystemForces& LoadedSystem::calcForces(const SimTK::State& state, double t) {
   readMotion(state);
   context_.excitation.calcValues(t, signals_);
   if (!signal_rates_.empty()) {
     context_.excitation.calcRates(t, signal_rates_);
   }
-  context_.expressions.setState(t, coordinates_, rates_, states_, signals_, signal_rates_);
+  if (context_.expressions.needsGravity()) {
+    readGravity(state);
+  }
+  context_.expressions.setState(t, coordinates_, rates_, gravity_, states_, signals_, signal_rates_);
   std::fill(loads_.on_bodies.begin(), loads_.on_bodies.end(), equations::Spatial<double>{});
   std::fill(loads_.on_speeds.begin(), loads_.on_speeds.end(), 0.0);
   equations::ForceSum<double, StateExpressions> sum(motions_, coordinates_, rates_, states_,

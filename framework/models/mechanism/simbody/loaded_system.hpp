@@ -63,11 +63,12 @@ class LoadedSystem {
 
  private:
   void readMotion(const SimTK::State& state);
+  void readGravity(const SimTK::State& state);
 
   SimbodyContext& context_;
   BodyTree tree_;
   LoadNumbers numbers_;
-  std::vector<double> coordinates_, rates_, states_, signals_, signal_rates_;
+  std::vector<double> coordinates_, rates_, gravity_, states_, signals_, signal_rates_;
   std::vector<equations::BodyMotion<double>> motions_;  ///< ground first; without columns and bias
   equations::Loads<double> loads_;
   SystemForces forces_;

@@ -72,6 +72,18 @@ void StateExpressions::defineNames(const ModelSpec& model, const NamedValues<dou
   for (const std::string& rate : nameSignalRates(model.excitation, countSignalRates(model))) {
     signal_rates_.push_back(values_.contains(rate) ? kTaken : values_.define(rate));
   }
+  if (mayUseGravity(model)) {
+    defineGravity(model);
+  }
+}
+
+void StateExpressions::defineGravity(const ModelSpec& model) {
+  const SystemNames names(model.system);
+  for (const std::string& coordinate : names.getCoordinateNames()) {
+    const std::string name = coordinate + kGravitySuffix;
+    const bool is_taken = values_.contains(name) || isOwnName(model.system, name);
+    gravity_.push_back(is_taken ? kTaken : values_.define(name));
+  }
 }
 
 void StateExpressions::setNumbers(const NamedValues<double>& values) {
@@ -86,9 +98,18 @@ void StateExpressions::setFrom(int first, const std::vector<double>& values) {
   }
 }
 
+void StateExpressions::setAt(const std::vector<int>& places, const std::vector<double>& values) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] != kTaken) {
+      values_.upd(places[i]) = values[i];
+    }
+  }
+}
+
 void StateExpressions::setState(double t, const std::vector<double>& coordinates,
-                                const std::vector<double>& rates, const std::vector<double>& states,
-                                const std::vector<double>& signals, const std::vector<double>& signal_rates) {
+                                const std::vector<double>& rates, const std::vector<double>& gravity,
+                                const std::vector<double>& states, const std::vector<double>& signals,
+                                const std::vector<double>& signal_rates) {
   if (bound_.empty()) {
     return;
   }
@@ -96,11 +117,8 @@ void StateExpressions::setState(double t, const std::vector<double>& coordinates
   setFrom(first_speed_, rates);
   setFrom(first_signal_, signals);
   values_.upd(time_) = t;
-  for (std::size_t i = 0; i < signal_rates_.size(); ++i) {
-    if (signal_rates_[i] != kTaken) {
-      values_.upd(signal_rates_[i]) = signal_rates[i];
-    }
-  }
+  setAt(gravity_, gravity);
+  setAt(signal_rates_, signal_rates);
   setFrom(first_state_, states);
   for (std::size_t i = 0; i < named_.size(); ++i) {
     values_.upd(first_named_ + static_cast<int>(i)) = values_.calc(named_[i]);

@@ -120,6 +120,19 @@ TEST_P(EquationsOfEveryJoint, HoldInBranchesOfTheSameJoint) {
   expectAgreement(makeBranches(GetParam()));
 }
 
+TEST_P(EquationsOfEveryJoint, KnowTheForceOfGravityOnCoordinates) {
+  ModelSpec model = makeTree(GetParam());
+  for (const BodySpec& body : model.system.bodies) {
+    for (std::size_t i = 0; i < body.joint.coordinates.size(); ++i) {
+      const std::string name = body.joint.coordinates[i].text;
+      if (getJointCoordinates(body.joint.type)[i].takes_forces) {
+        model.system.elements.get<ForceLaw>().push_back({{name, {}}, ex("-0.7*" + name + "_gravity")});
+      }
+    }
+  }
+  expectAgreement(model);
+}
+
 INSTANTIATE_TEST_SUITE_P(AllTypes, EquationsOfEveryJoint, ::testing::ValuesIn(listJoints()));
 
 TEST(Equations, HoldForBushings) {

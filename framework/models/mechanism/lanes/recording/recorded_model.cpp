@@ -240,6 +240,12 @@ class ModelRecorder {
     return state;
   }
 
+  NamedValues<Symbol> nameState(const ModelState<Symbol>& state,
+                                const std::vector<equations::BodyMotion<Symbol>>& bodies,
+                                const Symbols& rates) const {
+    return equations::nameState(model_, names_, system_, bodies, state, rates, values_);
+  }
+
   /// Of friction, in the recorder's state.
   Symbol calcLevel(const StateNumber<Symbol>& level) {
     if (level.varying == nullptr) {
@@ -247,7 +253,8 @@ class ModelRecorder {
     }
     const ModelState<Symbol> state = makeState(getFirstOrder());
     const Symbols rates = equations::calcRates(system_, state.coordinates, state.speeds);
-    return equations::nameState(model_, names_, state, rates, values_).calc(*level.varying);
+    const auto bodies = equations::calcMotions(system_, state.coordinates, state.speeds);
+    return nameState(state, bodies, rates).calc(*level.varying);
   }
 
   /// Time derivatives of signals, of the orders that are used.
@@ -262,7 +269,7 @@ class ModelRecorder {
 
   /// What expressions of outputs may use.
   NamedValues<Symbol> nameAll(const ModelState<Symbol>& state, const ModelMotion<Symbol>& motion) {
-    NamedValues<Symbol> named = equations::nameState(model_, names_, state, motion.rates, values_);
+    NamedValues<Symbol> named = nameState(state, motion.bodies, motion.rates);
     const Symbols second =
         system_.closures.empty()
             ? calcSecondDerivatives(state, motion)
@@ -316,7 +323,7 @@ class ModelRecorder {
   }
 
   Symbols calcQuantitiesAtRest(const ModelState<Symbol>& quiet, const ModelMotion<Symbol>& rest) const {
-    NamedValues<Symbol> named = equations::nameState(model_, names_, quiet, rest.rates, values_);
+    NamedValues<Symbol> named = nameState(quiet, rest.bodies, rest.rates);
     for (const std::string& coordinate : names_.getCoordinateNames()) {
       named.set(coordinate + "_ddot", Symbol(0.0));
     }
