@@ -8,9 +8,9 @@ an answer of is not inferred again.
 """
 import argparse
 import json
+import os
 import re
 import subprocess
-import time
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
@@ -223,37 +223,45 @@ class Study:
         return values, file
 
     def infer(self, machine):
-        """The answer, and its seconds."""
+        """The answer, its seconds of a processor and the largest memory in MB."""
         file = self.folder / f"{machine}.json"
         if not file.exists():
-            begin = time.time()
-            result = subprocess.run(
-                [self.twinmap, "infer", self.experiment, self.folder / f"{machine}.csv", "--json"],
-                capture_output=True,
-                text=True,
-            )
-            answer = json.loads(result.stdout)
-            answer["seconds"] = time.time() - begin
+            command = [self.twinmap, "infer", self.experiment, self.folder / f"{machine}.csv", "--json"]
+            with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+                answer = json.loads(process.stdout.read())
+                _, _, usage = os.wait4(process.pid, 0)
+            answer["seconds"] = usage.ru_utime + usage.ru_stime
+            answer["megabytes"] = usage.ru_maxrss / 1024
             file.write_text(json.dumps(answer))
         return json.loads(file.read_text())
 
-    def judge(self, machine):
-        """Errors of the base parameters over their sds and over the limit's; the status; seconds."""
-        values, truth = self.draw(machine)
-        answer = self.infer(machine)
-        if "identified" not in answer:
-            return None, None, answer["status"], answer["seconds"]
-        covariance, names = calc_limit(Arm(truth, values["g"]), self.motion, self.parameters)
-        standard = calc_standard(values)
-        by_sd, by_limit = [], []
-        for one in answer["identified"]:
+    def list_base(self, machine, names):
+        """Of each base parameter that is named: its weights of the standard numbers, mean and sd."""
+        base = []
+        for one in self.infer(machine).get("identified", []):
             weights = np.zeros(len(names))
             for term in one["terms"]:
                 weights[names.index(term["of"])] = term["coefficient"]
-            error = one["mean"] - weights @ np.array([standard[name] for name in names])
-            by_sd.append(error / one["sd"])
-            by_limit.append(error / np.sqrt(weights @ covariance @ weights))
-        return np.array(by_sd), np.array(by_limit), answer["status"], answer["seconds"]
+            base.append((weights, one["mean"], one["sd"]))
+        return base
+
+    def judge(self, machine):
+        """Errors of the base parameters over their sds and over the limit's."""
+        values, truth = self.draw(machine)
+        covariance, names = calc_limit(Arm(truth, values["g"]), self.motion, self.parameters)
+        standard = calc_standard(values)
+        exact = np.array([standard[name] for name in names])
+        base = self.list_base(machine, names)
+        errors = np.array([mean - weights @ exact for weights, mean, _ in base])
+        sds = np.array([sd for _, _, sd in base])
+        limits = np.array([np.sqrt(weights @ covariance @ weights) for weights, _, _ in base])
+        return errors / sds, errors / limits
+
+
+def calc_share(one_by_one):
+    """A share over machines, and its standard error from their scatter."""
+    shares = np.array([np.mean(one) for one in one_by_one])
+    return f"{shares.mean():.3f} +- {shares.std(ddof=1) / np.sqrt(len(shares)):.3f}"
 
 
 def main():
@@ -263,24 +271,26 @@ def main():
     parser.add_argument("--machines", type=int, default=100)
     arguments = parser.parse_args()
     study = Study(arguments)
-    all_sds, all_limits = [], []
-    print(
-        "| machine | status | base parameters | error over limit | 95 % intervals hold | seconds |\n|--:|---|--:|--:|--:|--:|"
-    )
+    print("| machine | status | base parameters | error over limit | 95 % hold | 50 % hold | s | MB |")
+    print("|--:|---|--:|--:|--:|--:|--:|--:|")
+    squares, holds, halves, times = [], [], [], []
     for machine in range(1, arguments.machines + 1):
-        by_sd, by_limit, status, seconds = study.judge(machine)
-        if by_sd is None:
-            print(f"| {machine} | {status} | - | - | - | {seconds:.0f} |", flush=True)
-            continue
-        all_sds.append(by_sd)
-        all_limits.append(by_limit)
-        print(
-            f"| {machine} | {status} | {len(by_sd)} | {np.sqrt(np.mean(by_limit**2)):.2f} "
-            f"| {np.mean(np.abs(by_sd) < 1.96):.2f} | {seconds:.0f} |",
-            flush=True,
-        )
-    sds, limits = np.concatenate(all_sds), np.concatenate(all_limits)
-    print(f"| all | | {len(sds)} | {np.sqrt(np.mean(limits**2)):.3f} | {np.mean(np.abs(sds) < 1.96):.3f} | |")
+        by_sd, by_limit = study.judge(machine)
+        answer = study.infer(machine)
+        times.append(answer["seconds"])
+        row = f"| {machine} | {answer['status']} | {len(by_sd)}"
+        if len(by_sd) > 0:
+            squares.append(by_limit**2)
+            holds.append(np.abs(by_sd) < 1.96)
+            halves.append(np.abs(by_sd) < 0.674)
+            row += f" | {np.sqrt(squares[-1].mean()):.2f} | {holds[-1].mean():.2f} | {halves[-1].mean():.2f}"
+        else:
+            row += " | - | - | -"
+        print(f"{row} | {answer['seconds']:.0f} | {answer['megabytes']:.0f} |", flush=True)
+    print(
+        f"| all | | {sum(map(len, holds))} | {np.sqrt(np.mean(np.concatenate(squares))):.3f} "
+        f"| {calc_share(holds)} | {calc_share(halves)} | {np.mean(times):.0f} | |"
+    )
 
 
 if __name__ == "__main__":

@@ -76,6 +76,10 @@ class Simulator {
   /// many simulations.
   virtual void checkStart() {}
 
+  /// The same model at some of its times alone (s, ascending); null where these cost as much as all, since
+  /// what lies between is integrated.
+  virtual std::unique_ptr<Simulator> cloneAt(const Eigen::VectorXd& /*times*/) const { return nullptr; }
+
   /// The same model, integrated with errors some hundred times smaller; null where it cannot be. For
   /// responses that amplify the errors of the integration. From any thread.
   virtual std::unique_ptr<Simulator> clonePrecisely() const { return nullptr; }

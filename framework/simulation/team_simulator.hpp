@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <utility>
 
 #include "framework/simulation/simulator.hpp"
 
@@ -28,6 +30,10 @@ class TeamSimulator final : public Simulator {
                                SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override {
     return std::make_unique<TeamSimulator>(getOwn().clone());
+  }
+  std::unique_ptr<Simulator> cloneAt(const Eigen::VectorXd& times) const override {
+    std::unique_ptr<Simulator> own = getOwn().cloneAt(times);
+    return own ? std::make_unique<TeamSimulator>(std::move(own)) : nullptr;
   }
   const std::string& getEngine() const override { return getOwn().getEngine(); }
   std::vector<std::string> describeModel() override { return updOwn().describeModel(); }

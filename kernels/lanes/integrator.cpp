@@ -36,7 +36,8 @@ const StepEngine& chooseEngine(int samples, const Problem& problem) {
     return slots <= program::Interpreter::countReachable(engine.program);
   };
   const bool is_large = countNumbers(problem) > kMostNumbers;
-  const StepEngine& usual = chooseEngine(samples);
+  constexpr int kMany = 16;  // lanes take as many times of a sample where there are no states
+  const StepEngine& usual = chooseEngine(problem.counts.states == 0 ? kMany : samples);
   const StepEngine& suitable = &usual == &kSteps16Of4 && is_large ? kSteps8Of4 : usual;
   if (fits(suitable)) {
     return suitable;

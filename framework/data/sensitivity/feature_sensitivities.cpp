@@ -13,7 +13,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 LocalModel makeLocalModel(const FeatureExtractor& extractor, const std::vector<ParameterSpec>& parameters,
-                          const VectorXd& point, const VectorXd& stencil, const SampleStatus& status) {
+                          const VectorXd& point, const Eigen::Ref<const VectorXd>& stencil,
+                          const SampleStatus& status) {
   const auto points = 2 * static_cast<Eigen::Index>(parameters.size()) + 1;
   const MatrixXd responses = stencil.reshaped(stencil.size() / points, points);
   const MatrixXd features = extractor.extract(responses);

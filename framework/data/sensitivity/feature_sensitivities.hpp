@@ -20,7 +20,7 @@ struct LocalModel {
 
 /// From the responses of the point's stencil (StencilSimulator), one column.
 LocalModel makeLocalModel(const FeatureExtractor& extractor, const std::vector<ParameterSpec>& parameters,
-                          const Eigen::VectorXd& point, const Eigen::VectorXd& stencil,
+                          const Eigen::VectorXd& point, const Eigen::Ref<const Eigen::VectorXd>& stencil,
                           const SampleStatus& status);
 
 /// At points of the sampled box (columns), to `parameters`, the first p of it (such as collectUnknown; the

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -24,6 +25,10 @@ class MeasuredMisfit {
   /// The misfits at the columns of `points` (s x n), simulated as one batch; infinity where a simulation
   /// fails. After linearizeAll().
   virtual Eigen::VectorXd evaluate(const Eigen::MatrixXd& points) = 0;
+
+  /// The same of fewer samples (ThinnedMisfit), where their simulation costs as much less; else null. What
+  /// this refers to must outlive it.
+  virtual std::unique_ptr<MeasuredMisfit> makeThinned() const { return nullptr; }
 
   /// Of a measurement that may be looked at through windows, or under a hypothesis of its noise. From now on
   /// at the features of a window alone.

@@ -6,6 +6,7 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/sensitivity/stencil_simulator.hpp"
+#include "framework/estimation/refined/thinned_misfit.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -105,6 +106,48 @@ VectorXd Misfit::addPrior(VectorXd chi_squares, const MatrixXd& points) const {
   return chi_squares;
 }
 
+namespace {
+
+/// The features of a window that are sampled at these times, as rows of a response at them.
+ThinnedMisfit::Samples takeSamples(const GrowingWindow& window, const std::vector<FeatureInfo>& infos,
+                                   const VectorXd& measured, const VectorXd& times) {
+  ThinnedMisfit::Samples samples;
+  std::vector<Index> kept;
+  for (std::size_t i = 0; i < window.features.size(); ++i) {
+    const FeatureInfo& info = infos[static_cast<std::size_t>(window.features[i])];
+    const auto found = std::lower_bound(times.begin(), times.end(), info.time);
+    if (found != times.end() && *found == info.time) {
+      kept.push_back(static_cast<Index>(i));
+      samples.rows.push_back(info.output * times.size() + (found - times.begin()));
+    }
+  }
+  const double counts = static_cast<double>(window.features.size()) / static_cast<double>(kept.size());
+  samples.scale = std::sqrt(counts) * window.whitener->getScale()(kept);
+  samples.measured = measured(window.features)(kept);
+  return samples;
+}
+
+}  // namespace
+
+std::unique_ptr<MeasuredMisfit> Misfit::makeThinned() const {
+  const std::vector<FeatureInfo>& infos = model_.getExtractor().getInfos();
+  const bool are_samples = std::all_of(window_->features.begin(), window_->features.end(), [&](Index i) {
+    return infos[static_cast<std::size_t>(i)].isSample();
+  });
+  if (prior_ != nullptr || !are_samples || !window_->whitener || !window_->whitener->isDiagonal() ||
+      !simulator_.hasDerivatives()) {
+    return nullptr;
+  }
+  const VectorXd times = chooseTimes(simulator_.getLayout(), static_cast<Index>(window_->features.size()),
+                                     box_information_.size());
+  std::unique_ptr<Simulator> simulator = times.size() > 0 ? simulator_.cloneAt(times) : nullptr;
+  ThinnedMisfit::Samples samples = takeSamples(*window_, infos, measured_, times);
+  if (!simulator || samples.rows.empty()) {
+    return nullptr;
+  }
+  return std::make_unique<ThinnedMisfit>(std::move(simulator), std::move(samples), box_);
+}
+
 void Misfit::setWindow(const GrowingWindow& window) {
   window_ = &window;
   renewNoise();
@@ -133,7 +176,7 @@ std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
 }
 
 Index Misfit::countTogether(int responses) const {
-  constexpr Index kMostNumbers = Index{1} << 25;  // 256 MiB
+  constexpr Index kMostNumbers = Index{1} << 24;  // 128 MiB
   return std::max<Index>(
       1, kMostNumbers / (responses * std::max<Index>(1, simulator_.getLayout().getRowCount())));
 }
@@ -210,7 +253,8 @@ VectorXd Misfit::evaluate(const MatrixXd& points) {
 }
 
 VectorXd Misfit::sumUp(const MatrixXd& points, const std::function<VectorXd(const MatrixXd&)>& calcLosses) {
-  const Index most = countTogether(1);
+  constexpr Index kFew = 32, kMostNumbers = Index{1} << 22;  // 32 MiB, of which some copies are made
+  const Index most = std::max(kFew, kMostNumbers / std::max<Index>(1, measured_.size()));
   VectorXd losses(points.cols());
   for (Index first = 0; first < points.cols(); first += most) {
     std::vector<SampleStatus> statuses;

@@ -29,6 +29,9 @@ class Misfit final : public MeasuredMisfit {
   const SearchBox& getBox() const { return box_; }
   int getSimulations() const override { return simulations_; }
 
+  /// Of samples whose noise is independent, of a simulator that can be cloned at fewer times.
+  std::unique_ptr<MeasuredMisfit> makeThinned() const override;
+
   void setWindow(const GrowingWindow& window) override;
   /// Takes the noise at the next point that is linearised, where it depends on the response; it stays until
   /// it is renewed, so that misfits can be compared.
@@ -36,7 +39,7 @@ class Misfit final : public MeasuredMisfit {
 
   /// By exact derivatives where the simulator has them (simulateStencils).
   LocalMisfit linearize(const Eigen::VectorXd& at) { return linearizeAll(at).front(); }
-  /// At all columns of `points` (s x n), simulated in batches of at most 256 MiB.
+  /// At all columns of `points` (s x n), simulated in batches of at most 128 MiB.
   std::vector<LocalMisfit> linearizeAll(const Eigen::MatrixXd& points) override;
 
   /// Whether four points are linearised about as fast as one: exact derivatives in lanes.
@@ -46,8 +49,8 @@ class Misfit final : public MeasuredMisfit {
   /// whitener: 2 s + 1 simulations, one batch.
   ProbedMisfit probe(const Eigen::VectorXd& at, const Eigen::MatrixXd& ways);
 
-  /// The misfits at the columns of `points` (s x n), simulated in batches of at most 256 MiB; infinity where
-  /// a simulation fails. After linearize().
+  /// The misfits at the columns of `points` (s x n), simulated in batches of some 32 MiB; infinity where a
+  /// simulation fails. After linearize().
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points) override;
 
   Eigen::VectorXd sumUp(const Eigen::MatrixXd& points,
@@ -56,7 +59,7 @@ class Misfit final : public MeasuredMisfit {
  private:
   /// Whitened residuals (k x n) at the columns of `points` (s x n), simulated as one batch.
   Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
-  /// Points whose responses, so many each, are held together.
+  /// Points whose responses, so many each, are held together: 128 MiB.
   Eigen::Index countTogether(int responses) const;
   void linearizeBatch(const Eigen::MatrixXd& points, int neighbours, std::vector<LocalMisfit>& all);
   const NoiseWhitener& getWhitener() const;

@@ -57,6 +57,7 @@ class MisfitSurface {
   int getSimulations() const;
   const LogCoordinates& getCoordinates() const { return coordinates_; }
   const std::vector<MeasuredPart>& getParts() const { return parts_; }
+  const Prior& getPrior() const { return prior_; }
 
   /// Of the parts' windows (RefinementModel::getWindows), as many as the one with the most has.
   std::size_t countWindows() const;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,7 +23,8 @@ namespace {
 /// Residuals and minus their derivatives in the surface's coordinates, of one part of it.
 struct LinearResponse {
   VectorXd residual;
-  MatrixXd jacobian;  ///< of all coordinates
+  MatrixXd jacobian;     ///< of all coordinates
+  MatrixXd information;  ///< of its jacobian
 };
 
 /// Of each column its parts; no parts where it cannot be simulated.
@@ -39,25 +42,74 @@ std::vector<std::vector<LinearResponse>> linearizeColumns(MisfitSurface& surface
       const std::vector<Index>& own = surface.getParts()[part].unknown;
       MatrixXd jacobian = MatrixXd::Zero(local.jacobian.rows(), points.rows());
       jacobian(Eigen::all, own) = local.jacobian * slopes(own).asDiagonal();
-      columns[static_cast<std::size_t>(i)].push_back({local.residual, std::move(jacobian)});
+      MatrixXd information = MatrixXd::Zero(points.rows(), points.rows());
+      information(own, own) = slopes(own).asDiagonal() * local.information * slopes(own).asDiagonal();
+      columns[static_cast<std::size_t>(i)].push_back(
+          {local.residual, std::move(jacobian), std::move(information)});
     }
   }
   return columns;
 }
 
+/// The same measurements at fewer times, where all parts can be thinned (MeasuredMisfit::makeThinned).
+class ThinnedSurface {
+ public:
+  explicit ThinnedSurface(const MisfitSurface& whole) {
+    std::vector<MeasuredPart> parts;
+    for (const MeasuredPart& part : whole.getParts()) {
+      misfits_.push_back(part.losses.empty() ? part.misfit->makeThinned() : nullptr);
+      if (!misfits_.back()) {
+        return;
+      }
+      parts.push_back({misfits_.back().get(), nullptr, part.unknown});
+    }
+    surface_.emplace(std::move(parts), whole.getCoordinates(), whole.getPrior());
+  }
+
+  MisfitSurface* find() { return surface_ ? &*surface_ : nullptr; }
+
+ private:
+  std::vector<std::unique_ptr<MeasuredMisfit>> misfits_;
+  std::optional<MisfitSurface> surface_;
+};
+
 /// Leads draws of the linear response to where the simulator responds so.
 class Follower {
  public:
-  Follower(MisfitSurface& surface, const Basin& basin)
-      : surface_(surface), at_(basin.local.at), center_(linearizeColumns(surface, at_).front()) {}
+  Follower(MisfitSurface& surface, const VectorXd& at)
+      : surface_(surface), at_(at), center_(linearizeColumns(surface, at_).front()) {}
 
-  bool isKnown() const { return !center_.empty(); }
+  /// Moves those columns of `points` that are away from what their draws (columns of `drawn`) ask for, in
+  /// steps of Gauss and Newton. Returns those that have not arrived.
+  std::vector<Index> lead(const MatrixXd& drawn, std::vector<Index> away, MatrixXd& points) const {
+    constexpr int kSteps = 5;
+    for (int step = 0; step < kSteps && !center_.empty() && !away.empty(); ++step) {
+      move(drawn, away, points);
+      away = listAway(drawn, away, points);
+    }
+    return away;
+  }
 
-  /// One step of Gauss and Newton of some columns towards what their draws (columns of `drawn`) ask for.
+  /// Those of some columns whose response noise would tell from what is asked for.
+  std::vector<Index> listAway(const MatrixXd& drawn, const std::vector<Index>& looked_at,
+                              const MatrixXd& points) const {
+    constexpr double kArrived = 0.25;  // of what chi-square varies by among draws
+    const double close = kArrived * std::sqrt(2.0 * static_cast<double>(surface_.getDimensions()));
+    const VectorXd excess = calcExcess(drawn(Eigen::all, looked_at), points(Eigen::all, looked_at));
+    std::vector<Index> away;
+    for (std::size_t i = 0; i < looked_at.size(); ++i) {
+      if (!(std::abs(excess[static_cast<Index>(i)]) < close)) {
+        away.push_back(looked_at[i]);
+      }
+    }
+    return away;
+  }
+
+ private:
   void move(const MatrixXd& drawn, const std::vector<Index>& moved, MatrixXd& points) const {
-    constexpr std::size_t kBatch = 8;  // Jacobians in memory at a time
-    for (std::size_t first = 0; first < moved.size(); first += kBatch) {
-      const std::size_t end = std::min(first + kBatch, moved.size());
+    const std::size_t most = countTogether();
+    for (std::size_t first = 0; first < moved.size(); first += most) {
+      const std::size_t end = std::min(first + most, moved.size());
       const std::vector<Index> batch(moved.begin() + static_cast<std::ptrdiff_t>(first),
                                      moved.begin() + static_cast<std::ptrdiff_t>(end));
       const auto columns = linearizeColumns(surface_, points(Eigen::all, batch));
@@ -66,6 +118,16 @@ class Follower {
         points.col(batch[i]) = (points.col(batch[i]) + step).cwiseMax(-1.0).cwiseMin(1.0);
       }
     }
+  }
+
+  /// Points whose Jacobians are held together.
+  std::size_t countTogether() const {
+    constexpr Index kMostNumbers = Index{1} << 23;  // 64 MiB
+    Index numbers = 1;
+    for (const LinearResponse& part : center_) {
+      numbers += part.jacobian.size();
+    }
+    return static_cast<std::size_t>(std::max<Index>(1, kMostNumbers / numbers));
   }
 
   /// What the responses at points leave of what is asked for, in noise standard deviations (n); infinite
@@ -81,7 +143,6 @@ class Follower {
     return excess;
   }
 
- private:
   VectorXd calcWanted(const LinearResponse& center, const VectorXd& drawn) const {
     return center.residual - center.jacobian * (drawn - at_);
   }
@@ -95,9 +156,8 @@ class Follower {
     information.diagonal().array() += kHalfWidthInformation;
     VectorXd descent = information * (drawn - point);
     for (std::size_t part = 0; part < here.size(); ++part) {
-      const MatrixXd& jacobian = here[part].jacobian;
-      information += jacobian.transpose() * jacobian;
-      descent += jacobian.transpose() * (here[part].residual - calcWanted(center_[part], drawn));
+      information += here[part].information;
+      descent += here[part].jacobian.transpose() * (here[part].residual - calcWanted(center_[part], drawn));
     }
     return linalg::solvePositiveDefinite(information, descent);
   }
@@ -111,26 +171,18 @@ class Follower {
 
 importance::AdaptiveDraws drawFollowed(MisfitSurface& surface, const Basin& basin, int draws,
                                        std::uint64_t seed) {
-  constexpr int kSteps = 5;
-  constexpr double kArrived = 0.25;  // of what chi-square varies by among draws
-  const double close = kArrived * std::sqrt(2.0 * static_cast<double>(surface.getDimensions()));
-  const Follower follower(surface, basin);
+  const Follower follower(surface, basin.local.at);
   importance::AdaptiveDraws followed = drawLinear(surface, basin, draws, seed);
-  const MatrixXd drawn = followed.draws.points;
+  MatrixXd& points = followed.draws.points;
+  const MatrixXd drawn = points;
   std::vector<Index> away(static_cast<std::size_t>(draws));
   std::iota(away.begin(), away.end(), Index{0});
-  for (int step = 0; step < kSteps && follower.isKnown() && !away.empty(); ++step) {
-    follower.move(drawn, away, followed.draws.points);
-    const VectorXd excess =
-        follower.calcExcess(drawn(Eigen::all, away), followed.draws.points(Eigen::all, away));
-    std::vector<Index> still;
-    for (std::size_t i = 0; i < away.size(); ++i) {
-      if (!(std::abs(excess[static_cast<Index>(i)]) < close)) {
-        still.push_back(away[i]);
-      }
-    }
-    away = std::move(still);
+  ThinnedSurface thinned(surface);
+  if (MisfitSurface* few = thinned.find(); few != nullptr) {
+    Follower(*few, basin.local.at).lead(drawn, away, points);
+    away = follower.listAway(drawn, away, points);
   }
+  away = follower.lead(drawn, std::move(away), points);
   const auto arrived = static_cast<double>(draws) - static_cast<double>(away.size());
   followed.draws.weights = VectorXd::Constant(draws, 1.0 / std::max(1.0, arrived));
   followed.draws.weights(away).setZero();

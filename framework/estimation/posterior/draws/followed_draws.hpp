@@ -12,7 +12,8 @@ namespace twinmap {
 /// simulator responds as the linear response did there. What is determined has the noise's spread, what is
 /// not its prior: randomised measurements and priors, minimised (Oliver, He and Reynolds 1996). The weights
 /// of randomized_minima.hpp leave one draw of a hundred bent directions. Reliable where most arrive: the
-/// noise does not tell their response from that wanted. Cost: some three simulations with derivatives a draw.
+/// noise does not tell their response from that wanted. Cost: some three simulations with derivatives a draw,
+/// at few of the times where that is enough (MeasuredMisfit::makeThinned).
 importance::AdaptiveDraws drawFollowed(MisfitSurface& surface, const Basin& basin, int draws,
                                        std::uint64_t seed);
 

@@ -69,6 +69,35 @@ RestPrograms compileRest(const RecordedModel& recorded, bool with_derivatives,
   return programs;
 }
 
+/// Outputs are then functions of the time and the parameters alone: the signals have taken the place of all
+/// states, and the pivots are those of a unit matrix.
+bool isMemoryless(const RecordedModel& recorded) {
+  const auto prescribed = static_cast<int>(recorded.prescribed.size());
+  return prescribed == recorded.coordinate_count && countStates(recorded) == 2 * prescribed &&
+         !recorded.loops && recorded.sampling.jumps.empty() && recorded.events.guards.empty();
+}
+
+lanes::Equations makeEquations(const RecordedModel& recorded, const LaneModel& model) {
+  const RecordedSampling& sampling = recorded.sampling;
+  lanes::Equations equations{model.counts, recorded.derivatives, recorded.pivots, sampling.outputs};
+  equations.delays.assign(sampling.delays.begin(), sampling.delays.begin() + sampling.output_delay_count);
+  equations.output_delays = sampling.output_delays;
+  if (model.is_memoryless) {
+    equations.counts.states = 0;
+    equations.derivatives.clear();
+    equations.pivots.clear();
+    return equations;
+  }
+  equations.jumps = sampling.jumps;
+  equations.passed = sampling.passed;
+  equations.guards = recorded.events.guards;
+  equations.transitions = recorded.events.transitions;
+  equations.event_input = recorded.events.input;
+  equations.projection = recorded.projected;
+  equations.dips = recorded.events.dips;
+  return equations;
+}
+
 }  // namespace
 
 LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
@@ -84,16 +113,10 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   model.directions = static_cast<int>(parameters.size());
   std::vector<int> directions(parameters.size());
   std::iota(directions.begin(), directions.end(), 0);
-  const RecordedSampling& sampling = recorded.sampling;
-  const Symbols output_delays(sampling.delays.begin(), sampling.delays.begin() + sampling.output_delay_count);
   model.loops = recorded.loops;
   model.prescribed = recorded.prescribed;
-  model.problem = lanes::makeProblem(
-      recorder,
-      {model.counts, recorded.derivatives, recorded.pivots, sampling.outputs, output_delays,
-       sampling.output_delays, sampling.jumps, sampling.passed, recorded.events.guards,
-       recorded.events.transitions, recorded.events.input, recorded.projected, recorded.events.dips},
-      directions);
+  model.is_memoryless = isMemoryless(recorded);
+  model.problem = lanes::makeProblem(recorder, makeEquations(recorded, model), directions);
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
   if (recorded.record_with_rest) {
     model.at_rest = std::make_shared<DeferredRest>(

@@ -48,6 +48,7 @@ struct LaneModel {
   int hidden_count = 0;           ///< states of sensors and controllers, and modes of switches
   RecordedExcitation excitation;  ///< its symbols are not to be used
   RecordedSampling sampling;      ///< likewise
+  bool is_memoryless = false;     ///< nothing is integrated: `problem` has no states
   lanes::Problem problem;         ///< the motion and its outputs
   program::Program start;  ///< initial states (of the first phase's inputs), events, delays; with directions
                            ///< their derivatives, one by one

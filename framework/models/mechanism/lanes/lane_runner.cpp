@@ -163,6 +163,9 @@ class LaneRunner::Impl : public lanes::SampleStream {
     } catch (const SimulationFailure& failure) {
       return failure.what();
     }
+    if (model_.is_memoryless) {
+      sample.initial.clear();
+    }
     sample.index = static_cast<int>(column);
     sample.outputs = recorded_.size() > 0 ? recorded_.col(column).data() : responses_->col(column).data();
     sample.derivatives = derivatives_ == nullptr ? nullptr : output_derivatives_.col(column).data();

@@ -58,9 +58,10 @@ void checkSimulation(const SimulationSpec& simulation) {
   }
 }
 
-void checkShapes(const SharedModel& shared, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+void checkShapes(const SharedModel& shared, const ResponseLayout& layout,
+                 const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                  const Eigen::Ref<Eigen::MatrixXd>& responses) {
-  if (parameters.rows() != countSampled(shared.model) || responses.rows() != shared.layout.getRowCount() ||
+  if (parameters.rows() != countSampled(shared.model) || responses.rows() != layout.getRowCount() ||
       responses.cols() != parameters.cols()) {
     throw std::invalid_argument("MultibodySimulator::simulate: a matrix has the wrong shape");
   }
@@ -133,11 +134,13 @@ class MultibodySimulator::Impl {
         check == ModelCheck::kTrusted || !system.motions.empty() || !system.controllers.empty();
     shared_->box_center = in_lanes && shared_->lanes ? solveBoxCenter(context_, shared_->lanes->getValues())
                                                      : updSimbody().solveBoxCenter();
+    layout_ = shared_->layout;
     makeLanes();
   }
 
   /// Compiles all expressions now, while clones are made one after the other.
-  explicit Impl(std::shared_ptr<SharedModel> shared) : shared_(std::move(shared)), context_(shared_->model) {
+  Impl(std::shared_ptr<SharedModel> shared, ResponseLayout layout)
+      : shared_(std::move(shared)), layout_(std::move(layout)), context_(shared_->model) {
     makeLanes();
     if (!lanes_) {
       updSimbody();
@@ -173,11 +176,12 @@ class MultibodySimulator::Impl {
 
   LaneEngine& updLanes() { return lanes_.value(); }
   const std::shared_ptr<SharedModel>& getShared() const { return shared_; }
+  const ResponseLayout& getLayout() const { return layout_; }
 
  private:
   void makeLanes() {
     if (shared_->lanes) {
-      lanes_.emplace(*shared_->lanes, context_, SampleTask{shared_->layout, shared_->box_center});
+      lanes_.emplace(*shared_->lanes, context_, SampleTask{layout_, shared_->box_center});
     }
   }
 
@@ -195,6 +199,7 @@ class MultibodySimulator::Impl {
   }
 
   std::shared_ptr<SharedModel> shared_;
+  ResponseLayout layout_;  ///< at other times than the shared one where it is of cloneAt()
   ModelContext context_;
   std::unique_ptr<SimbodyModel> simbody_;  ///< made when first used: lanes need none
   std::optional<LaneEngine> lanes_;
@@ -210,7 +215,7 @@ MultibodySimulator::MultibodySimulator(std::unique_ptr<Impl> impl) : impl_(std::
 MultibodySimulator::~MultibodySimulator() = default;
 
 const ResponseLayout& MultibodySimulator::getLayout() const {
-  return impl_->getShared()->layout;
+  return impl_->getLayout();
 }
 
 void MultibodySimulator::checkStart() {
@@ -232,14 +237,14 @@ int MultibodySimulator::getBatchSize() const {
 
 void MultibodySimulator::simulate(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                   Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
-  checkShapes(*impl_->getShared(), parameters, responses);
+  checkShapes(*impl_->getShared(), impl_->getLayout(), parameters, responses);
   impl_->simulate(parameters, responses, statuses);
   explainStepLimits(impl_->getShared()->jumps, parameters.cols(), statuses);
 }
 
 void MultibodySimulator::simulateAround(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                         Eigen::Ref<Eigen::MatrixXd> responses, SampleStatus* statuses) {
-  checkShapes(*impl_->getShared(), parameters, responses);
+  checkShapes(*impl_->getShared(), impl_->getLayout(), parameters, responses);
   impl_->simulateAround(parameters, responses, statuses);
   explainStepLimits(impl_->getShared()->jumps, parameters.cols(), statuses);
 }
@@ -251,7 +256,7 @@ bool MultibodySimulator::hasDerivatives() const {
 void MultibodySimulator::simulateWithDerivatives(const Eigen::Ref<const Eigen::MatrixXd>& parameters,
                                                  Eigen::Ref<Eigen::MatrixXd> responses,
                                                  Eigen::MatrixXd& derivatives, SampleStatus* statuses) {
-  checkShapes(*impl_->getShared(), parameters, responses);
+  checkShapes(*impl_->getShared(), impl_->getLayout(), parameters, responses);
   impl_->updLanes().simulateWithDerivatives(parameters, responses, derivatives, statuses);
   explainStepLimits(impl_->getShared()->jumps, parameters.cols(), statuses);
 }
@@ -273,7 +278,20 @@ std::unique_ptr<Simulator> MultibodySimulator::clonePrecisely() const {
 
 std::unique_ptr<Simulator> MultibodySimulator::clone() const {
   const std::lock_guard<std::recursive_mutex> guard(building);
-  return std::unique_ptr<Simulator>(new MultibodySimulator(std::make_unique<Impl>(impl_->getShared())));
+  return std::unique_ptr<Simulator>(
+      new MultibodySimulator(std::make_unique<Impl>(impl_->getShared(), impl_->getLayout())));
+}
+
+std::unique_ptr<Simulator> MultibodySimulator::cloneAt(const Eigen::VectorXd& times) const {
+  const SharedModel& shared = *impl_->getShared();
+  if (!shared.lanes || !shared.lanes->getValues().is_memoryless || shared.layout.modes > 0) {
+    return nullptr;
+  }
+  const std::lock_guard<std::recursive_mutex> guard(building);
+  ResponseLayout layout = shared.layout;
+  layout.times = times;
+  return std::unique_ptr<Simulator>(
+      new MultibodySimulator(std::make_unique<Impl>(impl_->getShared(), std::move(layout))));
 }
 
 }  // namespace twinmap

@@ -240,6 +240,33 @@ TEST(Motion, TakesTheForceThatItsMassAndItsFrictionAskFor) {
   EXPECT_LT(compareDerivatives(model), 1e-8);
 }
 
+TEST(Motion, OfAllCoordinatesIsKnownAtAnyTimesAlone) {
+  const MultibodySimulator whole(makeDrivenCart(), kSampledTimes);
+  const Eigen::Array3i kept(1, 4, 7);
+  const auto few = whole.cloneAt(kSampledTimes(kept));
+  ASSERT_NE(few, nullptr);
+  const VectorXd point = Eigen::Vector3d(2.5, 0.7, 0.2);
+  MatrixXd responses(8, 1), slopes, few_responses(3, 1), few_slopes;
+  SampleStatus status;
+  whole.clone()->simulateWithDerivatives(point, responses, slopes, &status);
+  EXPECT_TRUE(status.ok) << status.reason;
+  few->simulateWithDerivatives(point, few_responses, few_slopes, &status);
+  EXPECT_TRUE(status.ok) << status.reason;
+  EXPECT_EQ(few_responses, responses(kept, Eigen::all));
+  EXPECT_EQ(few_slopes, slopes(kept, Eigen::all));
+}
+
+TEST(Motion, IsIntegratedWhereSomethingBesideItIsFree) {
+  ModelSpec beside = makeDrivenCart();
+  addCart(beside, "x", "1");
+  const VectorXd point = Eigen::Vector3d(2.5, 0.7, 0.2);
+  EXPECT_EQ(MultibodySimulator(beside, kSampledTimes).cloneAt(kSampledTimes), nullptr);
+  EXPECT_LT((runModel(beside, kSampledTimes, point) - runModel(makeDrivenCart(), kSampledTimes, point))
+                .cwiseAbs()
+                .maxCoeff(),
+            1e-12);
+}
+
 TEST(Motion, HasExactDerivatives) {
   EXPECT_LT(compareDerivatives(makeShaker(true)), 1e-5);
 }
