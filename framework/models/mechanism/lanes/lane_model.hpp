@@ -37,7 +37,7 @@ class DeferredRest {
 };
 
 /// Of more coordinates neither equilibria nor modes nor implicit steps are offered. The derivatives by each
-/// coordinate and speed of 30 take 6 s and 2 GB to compile; both grow as the fourth power.
+/// coordinate and speed of 30 take 3 s and 0.4 GB to compile; both grow as the fourth power.
 constexpr int kMostDifferentiated = 30;
 
 /// The programs of a model that all threads share; immutable. Symbols: see RecordedModel.
