@@ -204,8 +204,12 @@ def diagnose(twinmap, folder, seed, grows):
     return {"named": named, "nothing": not terms, "seconds": answer["seconds"]}
 
 
+def narrow(values, names):
+    return [f"parameters.{name}.bounds=[{0.9 * values[name]}, {1.1 * values[name]}]" for name in names]
+
+
 def time_lanes(twinmap, folder, rounds, samples=4000):
-    """Of each drive and gravity, a sample's time over that of Coulomb friction, both in each round."""
+    """Of each drive and gravity, a sample's time over that of Coulomb friction of the mean level, both in each round."""
     ratios = {}
     for seed in range(4):
         servo = Servo(seed)
@@ -214,12 +218,13 @@ def time_lanes(twinmap, folder, rounds, samples=4000):
             place = folder / f"lanes{seed}{with_load}"
             place.mkdir(parents=True, exist_ok=True)
             files[with_load] = servo.write(place, with_load)[0]
+        load = np.mean(np.abs(servo.truth["W"] * np.sin(servo.swing(servo.truth))))
+        even = {**servo.truth, "F": servo.truth["F"] + servo.truth["mu"] * load}
         found = []
         for _ in range(rounds):
             times = {}
             for with_load, file in files.items():
-                narrow = [f"parameters.{n}.bounds=[{0.9 * servo.truth[n]}, {1.1 * servo.truth[n]}]" for n in NAMES]
-                overrides = narrow if with_load else narrow[:-1]
+                overrides = narrow(servo.truth, NAMES) if with_load else narrow(even, NAMES[:-1])
                 few = time_run(twinmap, str(file), samples // 10, *overrides)
                 times[with_load] = time_run(twinmap, str(file), samples, *overrides) - few
             found.append(times[True] / times[False])
