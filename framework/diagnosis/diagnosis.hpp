@@ -48,8 +48,8 @@ struct Diagnosis {
   ExplainedFit after;            ///< that of `corrected`; `before` where nothing was found
   /// What that leaves unexplained, as a process: where it does, and noise alone has less evidence.
   std::optional<Remainder> remainder;
-  /// A process in the place of all terms that were found, where it has more evidence than they have, as the
-  /// random force of wind or of a drive's chatter would, or ties with them.
+  /// A process in the place of all terms that were found, where it has more evidence or ties with them. Wind
+  /// and a drive's chatter are such.
   std::optional<Remainder> process;
   bool process_ties = false;  ///< whether the recordings do not tell it from the terms (kTiedEvidence)
   /// Whether `after` counts the colours that the noise of recordings has, which explain all where no term

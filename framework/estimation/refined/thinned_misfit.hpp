@@ -9,8 +9,8 @@
 
 namespace twinmap {
 
-/// A misfit of samples at some of the times alone, each of which counts as many times as all are more: as
-/// informative as all where the response is smooth, in so much less time. For steps, not for answers.
+/// A misfit of samples at some of the times alone, each of which counts as many times as all are more. It is
+/// as informative where the response is smooth, in so much less time. For steps, not for answers.
 class ThinnedMisfit final : public MeasuredMisfit {
  public:
   /// Residuals of each feature that is kept: (measured - response[row]) * scale.
