@@ -231,6 +231,23 @@ class View(unittest.TestCase):
                 self.assertAlmostEqual(other - 1, sign * one, delta=1e-6)  # y is 0 at 1 m
             self.assertGreater(mode["poses"][12 + 9] ** 2 + mode["poses"][36 * 6 + 12 + 9] ** 2, 0)
 
+    def test_modes_of_more_coordinates_than_are_recorded_at_once_are_those_of_a_chain(self):
+        n, names = 12, ["0"] + [f"x{i}" for i in range(1, 13)] + ["0"]
+        bodies = "".join(
+            f"    b{i}: {{mass: 1, joint: {{type: slider, coordinates: [x{i}]}}}}\n" for i in range(1, n + 1)
+        )
+        laws = "".join(
+            f"    - {{coordinate: {at}, force: k*({before} - 2*{at} + {after})}}\n"
+            for before, at, after in zip(names, names[1:-1], names[2:])
+        )
+        head, tail = CHAIN.split("  bodies:\n")[0], CHAIN[CHAIN.index("initial:") :]
+        text = f"{head}  bodies:\n{bodies}  force_laws:\n{laws}{tail}"
+        self.file.write_text(re.sub(r"\bx\b", "x1", text))
+        frequencies = [mode["frequency"] for mode in read_scene(self.view()[0])["modes"]]
+        self.assertEqual(len(frequencies), n)
+        for i, frequency in enumerate(frequencies, 1):  # between walls, k / m = 100 1/s2
+            self.assertAlmostEqual(frequency, 20 * sin(i * pi / (2 * (n + 1))) / (2 * pi), delta=1e-6)
+
     def add_shapes(self, shapes):
         text = PENDULUM.replace("pen<du>lum", "pendulum").replace(
             "      mass: 2", f"      shapes: {shapes}\n      mass: 2"
