@@ -151,9 +151,9 @@ class Judged:
         parameters = make_parameters(spec, links)
         table = np.loadtxt(study.folder / f"{machine}.csv", delimiter=",", skiprows=1).T
         residual = Residual(spec, study.motion, table[8:])
-        begin = time.time()
+        begin = time.process_time()
         found, result = sysid.optimize(parameters, residual, verbose=False)
-        self.seconds = time.time() - begin
+        self.seconds = time.process_time() - begin
         rest = residual(result.x, found)[0][0]
         self.chi_square = rest @ rest / rest.size
         covariance, intervals = sysid.calculate_intervals([rest], result.jac)
