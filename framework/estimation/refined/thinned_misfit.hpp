@@ -9,8 +9,8 @@
 
 namespace twinmap {
 
-/// A misfit of samples at some of the times alone, each of which counts as many times as all are more: as
-/// informative as all where the response is smooth, in so much less time. For steps, not for answers.
+/// A misfit of samples at some of the times alone, weighted to be as informative as all where the response is
+/// smooth. For steps, not for answers.
 class ThinnedMisfit final : public MeasuredMisfit {
  public:
   /// Residuals of each feature that is kept: (measured - response[row]) * scale.
@@ -37,8 +37,8 @@ class ThinnedMisfit final : public MeasuredMisfit {
   int simulations_ = 0;
 };
 
-/// Times (s, ascending), evenly chosen, at which so many times as many features are sampled as there are
-/// unknown parameters; all of `features` are samples. Empty where these are less than half of all times.
+/// Times (s, ascending), evenly chosen, with six samples for each unknown parameter. Empty where these are
+/// more than half of all times.
 Eigen::VectorXd chooseTimes(const ResponseLayout& layout, Eigen::Index features, Eigen::Index unknown);
 
 }  // namespace twinmap

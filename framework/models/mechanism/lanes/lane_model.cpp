@@ -58,8 +58,8 @@ Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
   return outputs;
 }
 
-/// Outputs are then functions of the time and the parameters alone: the signals have taken the place of all
-/// states, and the pivots are those of a unit matrix.
+/// Whether outputs are functions of the time and the parameters alone. Signals have then taken the place of
+/// all states, and the pivots are those of a unit matrix.
 bool isMemoryless(const RecordedModel& recorded) {
   const auto prescribed = static_cast<int>(recorded.prescribed.size());
   return prescribed == recorded.coordinate_count && countStates(recorded) == 2 * prescribed &&

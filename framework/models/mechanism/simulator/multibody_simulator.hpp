@@ -55,7 +55,7 @@ class MultibodySimulator final : public Simulator {
                                Eigen::Ref<Eigen::MatrixXd> responses, Eigen::MatrixXd& derivatives,
                                SampleStatus* statuses) override;
   std::unique_ptr<Simulator> clone() const override;
-  /// Where signals prescribe all motion, so that nothing is integrated (LaneModel::is_memoryless).
+  /// Null unless signals prescribe all motion, so that nothing is integrated (LaneModel::is_memoryless).
   std::unique_ptr<Simulator> cloneAt(const Eigen::VectorXd& times) const override;
   /// With a hundredth of the tolerances, at least 1e-13 and 1e-18; some 2.5 times the steps of dopri5. The
   /// first call builds and compiles the model once more.
