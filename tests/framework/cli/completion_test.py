@@ -16,7 +16,7 @@ COMMANDS = re.findall(r"^  ([a-z]+)  ", call("--help").stdout, re.MULTILINE)
 
 
 def list_options(command):
-    return re.findall(r"^  (?:-\w,)?(--[a-z-]+)", call(command, "--help").stdout, re.MULTILINE)
+    return re.findall(r"^  (?:-\w,)?(--[a-z0-9-]+)", call(command, "--help").stdout, re.MULTILINE)
 
 
 class Terminal:
