@@ -295,6 +295,7 @@ TEST(Lanes, RatesMayBeEarlierStates) {
 
 TEST(Lanes, LargeProblemsHaveFewerLanes) {
   Problem problem;
+  problem.counts.states = 2;
   for (const int slots : {1000, 10000, 20000, 40000}) {
     problem.derivative.slot_count = slots;
     for (const int samples : {1, 6, 12, 100}) {
@@ -305,6 +306,8 @@ TEST(Lanes, LargeProblemsHaveFewerLanes) {
   }
   problem.derivative.slot_count = 100;
   EXPECT_EQ(&chooseEngine(100, problem), &chooseEngine(100));
+  problem.counts.states = 0;  // a sample has as many times as wanted side by side
+  EXPECT_EQ(&chooseEngine(1, problem), &chooseEngine(100));
 }
 
 /// A point on a circle, whose radius the steps would leave.
