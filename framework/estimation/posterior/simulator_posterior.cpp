@@ -91,6 +91,20 @@ void setProfiles(const PosteriorProblem& problem, ProblemSurface& whole, Simulat
   }
 }
 
+/// The three of the least chi-square of 32 points all over the bounds.
+MatrixXd findLowest(MisfitSurface& surface) {
+  constexpr int kPoints = 32, kLowest = 3;
+  const MatrixXd points = makeStarts(surface.getDimensions(), 1, kPoints);
+  const VectorXd misfits = surface.calcMisfits(points);
+  std::vector<Index> order(kPoints);
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return std::isfinite(misfits[a]) && !(misfits[a] >= misfits[b]);
+  });
+  order.resize(kLowest);
+  return points(Eigen::all, order);
+}
+
 }  // namespace
 
 bool SimulatorPosterior::isExplained() const {
@@ -175,24 +189,19 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
 }
 
 LeastMisfit findLeastMisfit(const PosteriorProblem& problem, const MatrixXd& given) {
-  constexpr int kPoints = 32, kSearches = 3;
+  constexpr int kSteps = 3;  // of many parameters, from the priors' medians
   ProblemSurface whole(problem);
   MisfitSurface& surface = whole.upd();
-  const MatrixXd points = makeStarts(surface.getDimensions(), 1, kPoints);
-  const VectorXd misfits = surface.calcMisfits(points);
-  std::vector<Index> order(kPoints);
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::isfinite(misfits[a]) && !(misfits[a] >= misfits[b]);
-  });
-  order.resize(kSearches);
-  MatrixXd starts(points.rows(), kSearches + given.cols());
-  starts.leftCols(kSearches) = points(Eigen::all, order);
-  if (given.cols() > 0) {
-    starts.rightCols(given.cols()) = toCoordinates(whole.getCoordinates(), given);
+  const MatrixXd near = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
+  const bool has_many = near.cols() > 0 && surface.getDimensions() > kManyUnknown;
+  const MatrixXd lowest = has_many ? MatrixXd(surface.getDimensions(), 0) : findLowest(surface);
+  MatrixXd starts(surface.getDimensions(), lowest.cols() + near.cols());
+  starts.leftCols(lowest.cols()) = lowest;
+  if (near.cols() > 0) {
+    starts.rightCols(near.cols()) = toCoordinates(whole.getCoordinates(), near);
   }
   SearchTeam team(surface, starts);
-  team.run(BasinSearchOptions{}.max_iterations);
+  team.run(has_many ? kSteps : BasinSearchOptions{}.max_iterations);
   LeastMisfit best;
   for (const LocalSurface& end : team.listEnds()) {
     if (end.chi_square < best.chi_square) {
