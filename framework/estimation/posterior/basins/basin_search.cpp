@@ -33,21 +33,32 @@ bool areGross(const std::vector<LocalSurface>& ends) {
                      [](const LocalSurface& end) { return isGross(end.chi_square, end.degrees); });
 }
 
+/// The quarter of the least misfits.
+void keepLeast(std::vector<LocalSurface>& ends) {
+  std::stable_sort(ends.begin(), ends.end(),
+                   [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
+  ends.resize((ends.size() + 3) / 4);
+}
+
 /// The ends of searches of more and more of the response, each from where the last one ended. A chaotic
 /// response has many minima. Its beginning has few, which lie where the next ones do, unless the model does
-/// not explain even the beginning: then the whole is next.
+/// not explain even the beginning: then the whole is next, from the best of the ends.
 std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
   const std::size_t windows = surface.countWindows();
   for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
     surface.setWindow(i);
     SearchTeam team(surface, starts);
     team.run(kFewIterations);
-    const std::vector<LocalSurface> ends = team.listEnds();
+    std::vector<LocalSurface> ends = team.listEnds();
+    const bool explains_nothing = areGross(ends);
+    if (explains_nothing) {
+      keepLeast(ends);
+    }
     starts.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
     for (std::size_t k = 0; k < ends.size(); ++k) {
       starts.col(static_cast<Index>(k)) = ends[k].at;
     }
-    if (areGross(ends)) {
+    if (explains_nothing) {
       break;
     }
   }
