@@ -131,19 +131,44 @@ void addFriction(ModelSpec& model, const std::string& coordinate, const std::str
   addForceLaw(model, coordinate, fmt::format("-{}*tanh({}_dot/{})", growth, coordinate, speed));
 }
 
+bool isOfCoordinate(const ModelSpec& model, const std::string& name) {
+  const std::vector<BodySpec>& bodies = model.system.bodies;
+  return std::any_of(bodies.begin(), bodies.end(), [&](const BodySpec& body) {
+    return std::any_of(body.joint.coordinates.begin(), body.joint.coordinates.end(), [&](const Name& one) {
+      return name == one.text || name == one.text + "_dot" || name == one.text + kGravitySuffix;
+    });
+  });
+}
+
+bool isKnown(const ModelSpec& model, const std::string& name) {
+  return isOfDrive(model, name) || isOfCoordinate(model, name) || findNamed(model, name) != nullptr ||
+         isAmong(model.parameters, name) || isAmong(model.nuisance, name) || isAmong(model.constants, name);
+}
+
+/// Whether a force is still what it was: a term that it spoke of may have been taken out.
+bool isKnown(const ModelSpec& model, const Expression& force) {
+  const auto names = getUsedNames(force);
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return isKnown(model, name); });
+}
+
 TermCandidate makeLoadCandidate(const char* kind, const char* of, const CoordinateSizes& coordinate,
-                                const std::string& load) {
+                                const Acting& acting, std::string Acting::*part) {
   constexpr double kOnset = 0.04;  // of the largest speed, amid those that dry friction is scanned with
-  const std::string name = coordinate.name;
+  const std::string name = coordinate.name, load = acting.*part;
   TermCandidate candidate;
   candidate.term = fmt::format("{}.{}", kind, name);
   candidate.meaning =
       fmt::format("friction that grows with {}, as of a gear: c abs({}) on {}", of, load, name);
   candidate.unit = "1";
   candidate.dissipates = true;
-  candidate.add = [name, load, speed = toText(kOnset * coordinate.speed)](
+  candidate.add = [coordinate, load, part, speed = toText(kOnset * coordinate.speed)](
                       ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
-    addFriction(changed, name, coefficient + "*abs(" + load + ")", speed);
+    const std::string there =
+        isKnown(changed, Expression{load, {}}) ? load : findActing(changed, coordinate).*part;
+    if (!there.empty()) {
+      addFriction(changed, coordinate.name, coefficient + "*abs(" + there + ")", speed);
+    }
   };
   return candidate;
 }
@@ -155,11 +180,11 @@ std::vector<TermCandidate> listLoadCandidates(const ModelSpec& model, const Mode
   for (const CoordinateSizes& coordinate : sizes.coordinates) {
     const Acting acting = findActing(model, coordinate);
     if (!acting.load.empty()) {
-      candidates.push_back(makeLoadCandidate("load_friction", "load", coordinate, acting.load));
+      candidates.push_back(makeLoadCandidate("load_friction", "load", coordinate, acting, &Acting::load));
     }
     if (!acting.drive.empty()) {
       candidates.push_back(
-          makeLoadCandidate("drive_friction", "the drive's force", coordinate, acting.drive));
+          makeLoadCandidate("drive_friction", "the drive's force", coordinate, acting, &Acting::drive));
     }
   }
   return candidates;
