@@ -81,6 +81,17 @@ TEST(Candidates, TellWhatACoordinateCarriesFromWhatDrivesIt) {
   EXPECT_EQ(writeLevel(servo, "drive_friction.angle"), "max(0.01 + c*abs(0.3*(r - angle)), 0)");
 }
 
+// What was found beside a lag of the drive, in a model without it.
+TEST(Candidates, GrowWithTheDriveThatIsThere) {
+  const ExperimentSpec cart = loadExperiment(kCart);
+  const TermCandidate lag = find(listAtCenter(cart), "lag.F");
+  const ExperimentSpec lagging = addTerm(cart, lag, lag.size).experiment;
+  const TermCandidate friction = find(listAtCenter(lagging), "drive_friction.x");
+  for (const ExperimentSpec& experiment : {lagging, cart}) {
+    EXPECT_NO_THROW(checkExperiment(addTerm(experiment, friction, friction.size).experiment));
+  }
+}
+
 // Units, names and references of each are right, alone and all together.
 TEST(Candidates, MakeExperimentsThatPassTheChecks) {
   for (const std::string& file :
