@@ -41,8 +41,8 @@ std::string describeBest(const SearchState& state);
 class SearchStage {
  public:
   explicit SearchStage(std::string name, int total = 0);
-  /// Supposes what was not stated, another noise or clock: its chi-square does not compare with the stated
-  /// one's, so that within it the best fit stays what it was.
+  /// Supposes what was not stated, another noise or clock. Its chi-square does not compare with the stated
+  /// one's: within it the best fit stays what it was.
   static SearchStage supposing(std::string name);
   SearchStage(const SearchStage&) = delete;
   SearchStage& operator=(const SearchStage&) = delete;

@@ -41,8 +41,8 @@ void keepLeast(std::vector<LocalSurface>& ends) {
 }
 
 /// The ends of searches of more and more of the response, each from where the last one ended. A chaotic
-/// response has many minima. Its beginning has few, which lie where the next ones do. Where the
-/// model does not explain even that, the whole is next, from the best of the ends.
+/// response has many minima. Its beginning has few, which lie where the next ones do. The
+/// whole is next, from the best of the ends, if the model does not explain even that.
 std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
   const std::size_t windows = surface.countWindows();
   for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
