@@ -48,15 +48,14 @@ class Runner:
 
     def look(self, recording):
         """What look prints of the columns that the model reads."""
-        model = yaml.safe_load((self.folder / "model.yaml").read_text())
-        measurement = model.get("measurement", {})
+        model = (self.folder / "model.yaml").read_text()
+        measurement = yaml.safe_load(model).get("measurement", {})
         options = ["--rate", str(measurement["sample_rate"])] if "sample_rate" in measurement else []
         options += ["--time", measurement["time"]] if "time" in measurement else []
         command = [self.twinmap, "look", recording, *options]
         head, columns = subprocess.run(command, cwd=self.folder, capture_output=True, text=True).stdout.split("\n\n", 1)
-        used = (self.folder / "model.yaml").read_text()
         lines = columns.splitlines()
-        read = [line for line in lines[1:] if line and re.search(rf"\b{re.escape(line.split()[0])}\b", used)]
+        read = [line for line in lines[1:] if line and re.search(rf"\b{re.escape(line.split()[0])}\b", model)]
         return "\n".join(line.rstrip() for line in [*head.splitlines(), "", lines[0], *read])
 
 

@@ -131,17 +131,9 @@ void addFriction(ModelSpec& model, const std::string& coordinate, const std::str
   addForceLaw(model, coordinate, fmt::format("-{}*tanh({}_dot/{})", growth, coordinate, speed));
 }
 
-bool isOfCoordinate(const ModelSpec& model, const std::string& name) {
-  const std::vector<BodySpec>& bodies = model.system.bodies;
-  return std::any_of(bodies.begin(), bodies.end(), [&](const BodySpec& body) {
-    return std::any_of(body.joint.coordinates.begin(), body.joint.coordinates.end(), [&](const Name& one) {
-      return name == one.text || name == one.text + "_dot" || name == one.text + kGravitySuffix;
-    });
-  });
-}
-
 bool isKnown(const ModelSpec& model, const std::string& name) {
-  return isOfDrive(model, name) || isOfCoordinate(model, name) || findNamed(model, name) != nullptr ||
+  const Dependence on = findDependence(model, {name, {}});
+  return on.on_drive || on.on_coordinates || on.on_speeds || findNamed(model, name) != nullptr ||
          isAmong(model.parameters, name) || isAmong(model.nuisance, name) || isAmong(model.constants, name);
 }
 

@@ -26,7 +26,10 @@ class DeferredRest {
   explicit DeferredRest(std::function<RestPrograms()> make) : make_(std::move(make)) {}
 
   const RestPrograms& get() {
-    std::call_once(made_, [this] { programs_ = make_(); });
+    std::call_once(made_, [this] {
+      programs_ = make_();
+      make_ = nullptr;  // and what it holds of the record
+    });
     return programs_;
   }
 
