@@ -183,5 +183,90 @@ TEST(AlikeTerms, AreNotFoundWhereTheLawIsRight) {
   }
 }
 
+/// A slide that is driven against a stop; a drive with play; a ball that falls on a floor.
+const char* const kTouching[] = {R"(
+name: stopped
+parameters:
+  k: {bounds: [500, 2e4]}
+  d: {bounds: [0.2, 3], unit: N s/m}
+system:
+  bodies: {slide: {mass: 0.8, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: 40}]
+  dampers: [{coordinate: x, damping: d}]
+  stops: [{coordinate: x, above: 0.01, stiffness: k, dissipation: 0.4}]
+  force_laws: [{coordinate: x, force: F}]
+excitation: {F: {unit: N, sines: [{amplitude: 2.5, frequency: 1.9}]}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: 3}
+features: [{samples: {outputs: [x], start: 0.02, interval: 0.01, count: 280}}]
+noise: {stddev: {x: 1e-4}}
+)",
+                                 R"(
+name: play
+parameters:
+  k: {bounds: [10, 400]}
+  d: {bounds: [0.01, 0.1], unit: N m s/rad}
+system:
+  bodies: {load: {mass: 2, inertia: {moments: [0.01, 0.01, 0.01]}, joint: {type: pin, coordinates: [q]}}}
+  dampers: [{coordinate: q, damping: d}]
+  backlash: [{coordinate: q, gap: 0.04, stiffness: k, dissipation: 0.2}]
+  force_laws: [{coordinate: q, force: T}]
+excitation: {T: {unit: N m, sines: [{amplitude: 1, frequency: 1.3}, {amplitude: 0.4, frequency: 2.9}]}}
+outputs: {q: {coordinate: q}}
+simulation: {duration: 3}
+features: [{samples: {outputs: [q], start: 0.02, interval: 0.01, count: 280}}]
+noise: {stddev: {q: 3e-4}}
+)",
+                                 R"(
+name: floor
+parameters:
+  k: {bounds: [1e3, 1e5]}
+  d: {bounds: [0.01, 0.2], unit: N s/m}
+system:
+  gravity: [0, 0, -9.81]
+  bodies: {ball: {mass: 0.3, joint: {type: slider, axis: [0, 0, 1], coordinates: [z]}}}
+  dampers: [{coordinate: z, damping: d}]
+  contacts: [{body: ball, plane: {normal: [0, 0, 1]}, stiffness: k, dissipation: 0.3}]
+initial: {coordinates: {z: 0.2}}
+outputs: {z: {coordinate: z}}
+simulation: {duration: 1.2}
+features: [{samples: {outputs: [z], start: 0.005, interval: 0.005, count: 230}}]
+noise: {stddev: {z: 1e-4}}
+)"};
+const char* const kListsOfContacts[] = {"stops", "backlash", "contacts"};
+
+Diagnosis diagnoseContact(int which, const std::string& change, const VectorXd& point) {
+  const auto read = [&](const std::vector<std::string>& overrides) {
+    return readExperiment(parseExperimentTree(kTouching[which], "touching.yaml", overrides));
+  };
+  const ExperimentSpec experiment = read({});
+  std::vector<std::string> changes;
+  if (!change.empty()) {
+    changes.push_back(std::string("system.") + kListsOfContacts[which] + "[0]." + change);
+  }
+  return diagnose(experiment, {makeLayout(experiment), {measure(read(changes), point)}, {}}, {});
+}
+
+// Spheres press with the power 1.5 of the depth.
+TEST(AlikeTerms, AreOtherPowersOfAContact) {
+  const double hertz[] = {6e4, 300.0, 4e5}, damping[] = {0.8, 0.04, 0.05};
+  for (int i = 0; i < 3; ++i) {
+    const Diagnosis found = diagnoseContact(i, "exponent=1.5", Eigen::Vector2d(hertz[i], damping[i]));
+    ASSERT_EQ(found.found, 1U) << i;
+    EXPECT_EQ(found.listTerms().front().rfind("contact_power.", 0), 0U) << found.listTerms().front();
+    EXPECT_NEAR(found.steps.front().ranked.front().estimate, 0.5, 0.05) << i;
+    EXPECT_STREQ(found.getStatus(), "ok");
+  }
+}
+
+TEST(AlikeTerms, AreContactsThatLoseMoreEnergy) {
+  const Eigen::Vector2d point(80.0, 0.04);
+  const Diagnosis found = diagnoseContact(1, "dissipation=1.5", point);
+  EXPECT_EQ(found.listTerms(), std::vector<std::string>{"contact_loss.q"});
+  const Eigen::Array2d off = (found.averaged.mean - point).cwiseQuotient(found.averaged.stddev);
+  EXPECT_LT(off.abs().maxCoeff(), 3.5) << off;
+  EXPECT_EQ(diagnoseContact(1, "", point).found, 0U);
+}
+
 }  // namespace
 }  // namespace twinmap
