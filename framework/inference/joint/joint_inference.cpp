@@ -272,10 +272,7 @@ ExplainedRecording JointInferrer::explain(const Recording& recording, Unexplaine
 std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Recording>& recordings,
                                                             Misfits misfits) const {
   SimulatorPosteriorOptions options = options_;
-  if (misfits == Misfits::kStarts) {
-    options.search.settles = true;
-    options.search.max_batches = 2;
-  }
+  options.search.settles = misfits == Misfits::kStarts;
   std::vector<UnexplainedRecording> read;  // all, before any of them takes its time
   for (const Recording& one : recordings) {
     read.push_back(readUnexplained(find(one.trial).reader, *one.table, one.start));

@@ -21,10 +21,15 @@ namespace {
 /// Of the searches, that end in the best basin where noise does not explain it: half of the scouts, which are
 /// few; of all batches any, as the count of confirmations says enough.
 constexpr double kSettledScouts = 0.5, kSettledBatches = 0.0;
+/// Batches after which such a misfit's best fit is what was found.
+constexpr int kBatchesOfMisfit = 2;
+
+bool isExplained(const LocalSurface& local) {
+  return local.chi_square < calcChiSquareLimit(local.degrees);
+}
 
 bool isExplained(const std::vector<Basin>& basins) {
-  return !basins.empty() &&
-         basins.front().local.chi_square < calcChiSquareLimit(basins.front().local.degrees);
+  return !basins.empty() && isExplained(basins.front().local);
 }
 
 /// Whether even the best of some ends leaves what no noise is taken for.
@@ -40,35 +45,42 @@ void keepLeast(std::vector<LocalSurface>& ends) {
   ends.resize((ends.size() + 3) / 4);
 }
 
+struct GrownSearch {
+  std::vector<LocalSurface> ends;
+  bool explains_beginning = true;  ///< whether, of each window before the whole, any search did
+};
+
 /// The ends of searches of more and more of the response, each from where the last one ended. A chaotic
-/// response has many minima. Its beginning has few, which lie where the next ones do. The
-/// whole is next, from the best of the ends, if the model does not explain even that.
-std::vector<LocalSurface> searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
-  const std::size_t windows = surface.countWindows();
-  for (std::size_t i = 0; i + 1 < windows && starts.cols() > 0; ++i) {
-    surface.setWindow(i);
+/// response has many minima. Its beginning has few, which lie where the next ones do. What no search explains
+/// of a window, none will of the next: the quarter of the least misfits goes on. It does so in the whole at
+/// once where even that is gross.
+GrownSearch searchGrowing(MisfitSurface& surface, MatrixXd starts, int max_iterations) {
+  GrownSearch grown;
+  const auto search = [&](std::size_t window, int iterations) {
+    surface.setWindow(window);
     SearchTeam team(surface, starts);
-    team.run(kFewIterations);
-    std::vector<LocalSurface> ends = team.listEnds();
-    const bool explains_nothing = areGross(ends);
-    if (explains_nothing) {
+    team.run(iterations);
+    return team.listEnds();
+  };
+  const std::size_t last = surface.countWindows() - 1;
+  bool is_gross = false;
+  for (std::size_t i = 0; i < last && starts.cols() > 0 && !is_gross; ++i) {
+    std::vector<LocalSurface> ends = search(i, kFewIterations);
+    is_gross = areGross(ends);
+    if (std::none_of(ends.begin(), ends.end(), [](const LocalSurface& end) { return isExplained(end); })) {
+      grown.explains_beginning = false;
       keepLeast(ends);
     }
     starts.resize(Eigen::NoChange, static_cast<Index>(ends.size()));
     for (std::size_t k = 0; k < ends.size(); ++k) {
       starts.col(static_cast<Index>(k)) = ends[k].at;
     }
-    if (explains_nothing) {
-      break;
-    }
   }
-  surface.setWindow(windows - 1);
-  if (starts.cols() == 0) {
-    return {};
+  surface.setWindow(last);
+  if (starts.cols() > 0) {
+    grown.ends = search(last, max_iterations);
   }
-  SearchTeam team(surface, starts);
-  team.run(max_iterations);
-  return team.listEnds();
+  return grown;
 }
 
 /// The basin that is nearest to a point.
@@ -158,10 +170,11 @@ class BasinHunt {
     return !found_.basins.empty() && found_.basins.front().searches >= options_.confirmations;
   }
 
-  /// What the best basin leaves is so much that no noise is taken for it.
-  bool isGross() const {
+  /// What the best basin leaves is so much that no noise is taken for it, or none explains even the
+  /// beginning: no basin that is hard to find would.
+  bool isHopeless() const {
     const LocalSurface& best = found_.basins.front().local;
-    return twinmap::isGross(best.chi_square, best.degrees);
+    return isGross(best.chi_square, best.degrees) || !explains_beginning_;
   }
 
   /// Whether enough searches, and so large a share, end in the best basin, which is as wide as if the noise
@@ -196,7 +209,9 @@ class BasinHunt {
   }
 
   void searchWindows(const MatrixXd& starts) {
-    add(searchGrowing(surface_, starts, options_.max_iterations));
+    GrownSearch grown = searchGrowing(surface_, starts, options_.max_iterations);
+    explains_beginning_ = explains_beginning_ && grown.explains_beginning;
+    add(std::move(grown.ends));
     found_.starts += static_cast<int>(starts.cols());
   }
 
@@ -219,6 +234,7 @@ class BasinHunt {
   const MatrixXd starts_;
   const BasinSearchOptions options_;
   Index taken_ = 0;
+  bool explains_beginning_ = true;
   std::vector<LocalSurface> ends_;
   BasinSearch found_;
 };
@@ -264,9 +280,11 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
       hunt.searchWindows(all);
     }
     again.resize(Eigen::NoChange, 0);
-    const bool may_settle = !hunt.getFound().basins.empty() && (options.settles || hunt.isGross());
-    if (hunt.getFound().basins.empty() || hunt.isConfirmed() ||
-        (may_settle && hunt.isSettled(kSettledBatches))) {
+    if (hunt.getFound().basins.empty() || hunt.isConfirmed()) {
+      break;
+    }
+    if ((options.settles || hunt.isHopeless()) &&
+        (hunt.isSettled(kSettledBatches) || batch + 1 >= kBatchesOfMisfit)) {
       break;
     }
   }

@@ -41,10 +41,10 @@ struct BasinSearchOptions {
   /// Whether starts are spread as the prior is, not all over the bounds: of many parameters hardly any start
   /// is near enough else.
   bool from_prior = false;
-  /// Whether the scouts do where half of them end in the best basin, and a batch where it was found often
-  /// enough, although noise does not explain it: for models that lack something, whose best fit is wanted but
-  /// not trusted. The basin is then as wide as if the noise were as large as the residual. Of a gross misfit
-  /// a batch always does.
+  /// Whether noise need not explain the best basin: for models that lack something, whose best fit is wanted
+  /// but not trusted. The scouts do where half of them end in it. So does a batch where it was found often
+  /// enough, or the second one. The basin is then as wide as if the noise were as large as the residual.
+  /// Batches always do of a gross misfit, and where no search explains the beginning of the response.
   bool settles = false;
 };
 
