@@ -40,19 +40,6 @@ double calcCost(const Criterion& criterion, const MatrixXd& information) {
   return std::log(calcInverse(information).diagonal().dot(calcShares(criterion, information.rows())));
 }
 
-MatrixXd calcCostGradient(const Criterion& criterion, const MatrixXd& information) {
-  if (criterion.kind == Criterion::Kind::e_optimal) {
-    const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(information);
-    return -eigen.vectors.col(0) * eigen.vectors.col(0).transpose() / eigen.values[0];
-  }
-  const MatrixXd inverse = calcInverse(information);
-  if (criterion.kind == Criterion::Kind::d_optimal) {
-    return -inverse / static_cast<double>(information.rows());
-  }
-  const VectorXd shares = calcShares(criterion, information.rows());
-  return -inverse * shares.asDiagonal() * inverse / inverse.diagonal().dot(shares);
-}
-
 using Eigen::Index;
 using Eigen::VectorXd;
 

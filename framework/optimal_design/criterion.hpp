@@ -21,9 +21,6 @@ struct Criterion {
 /// log(sum_i w_i (M^-1)_ii / sum_i w_i). NaN where M is not positive definite. Cost: p^3.
 double calcCost(const Criterion& criterion, const Eigen::MatrixXd& information);
 
-/// d cost / d M (symmetric). Where the least eigenvalue is double, that of one of its eigenvectors.
-Eigen::MatrixXd calcCostGradient(const Criterion& criterion, const Eigen::MatrixXd& information);
-
 /// The criterion that an experiment asks for; the parameters it names are among `parameters`.
 Criterion makeCriterion(const CriterionSpec& spec, const std::vector<ParameterSpec>& parameters);
 

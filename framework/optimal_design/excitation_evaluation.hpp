@@ -36,7 +36,6 @@ class ExcitationEvaluator {
   const std::vector<FreeNumber>& getNumbers() const { return numbers_; }
   const std::vector<Limit>& getLimits() const { return limits_; }
   const ExperimentSpec& getExperiment() const { return experiment_; }
-  const Criterion& getCriterion() const { return criterion_; }
 
   /// The experiment with such values (not fractions).
   YamlNode makeTree(const Eigen::VectorXd& values) const { return setValues(tree_, numbers_, values); }

@@ -102,14 +102,6 @@ class NamedValues : public DefinedNames {
     return {calc(expressions[0]), calc(expressions[1]), calc(expressions[2])};
   }
 
-  std::vector<S> calcEach(const std::vector<Expression>& expressions) const {
-    std::vector<S> values;
-    for (const Expression& expression : expressions) {
-      values.push_back(calc(expression));
-    }
-    return values;
-  }
-
  private:
   static bool isInput(const ExpressionTree::Node& node) {
     return node.operation == program::Operation::kLiteral || node.operation == program::Operation::kParameter;

@@ -2,7 +2,6 @@
 
 #include <boost/random/sobol.hpp>
 #include <cmath>
-#include <cstring>
 
 #include "framework/base/random/nested_latin_hypercube.hpp"
 #include "framework/base/random/slices.hpp"
@@ -71,27 +70,6 @@ MatrixXd scaleToBounds(MatrixXd unit, const std::vector<ParameterSpec>& paramete
 MatrixXd samplePoints(const PointSetSpec& spec, const std::vector<ParameterSpec>& parameters,
                       std::uint64_t seed, RandomPurpose purpose) {
   return scaleToBounds(sampleUnitCube(spec, static_cast<int>(parameters.size()), seed, purpose), parameters);
-}
-
-bool isExtendedBy(const PointSetSpec& small, const PointSetSpec& large) {
-  if (small.method != large.method || small.samples > large.samples) {
-    return false;
-  }
-  switch (small.method) {
-    case DesignMethod::kLatinHypercube:
-      return small.samples == large.samples;
-    case DesignMethod::kNestedLatinHypercube:
-      return small.smallest.value_or(1) == large.smallest.value_or(1);
-    case DesignMethod::kSobol:
-    case DesignMethod::kUniform:
-      break;
-  }
-  return true;
-}
-
-bool isPrefix(const MatrixXd& small, const MatrixXd& large) {
-  return small.rows() == large.rows() && small.cols() <= large.cols() &&
-         (small.size() == 0 || std::memcmp(small.data(), large.data(), small.size() * sizeof(double)) == 0);
 }
 
 }  // namespace twinmap

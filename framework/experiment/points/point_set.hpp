@@ -25,11 +25,4 @@ Eigen::MatrixXd scaleToBounds(Eigen::MatrixXd unit, const std::vector<ParameterS
 Eigen::MatrixXd samplePoints(const PointSetSpec& spec, const std::vector<ParameterSpec>& parameters,
                              std::uint64_t seed, RandomPurpose purpose);
 
-/// Whether the points of `large` begin with those of `small`, bit for bit, given the same parameters, seed
-/// and purpose: nothing of `small` needs to be simulated again. A Latin hypercube extends only itself.
-bool isExtendedBy(const PointSetSpec& small, const PointSetSpec& large);
-
-/// Whether the columns of `large` begin with those of `small`, bit for bit.
-bool isPrefix(const Eigen::MatrixXd& small, const Eigen::MatrixXd& large);
-
 }  // namespace twinmap

@@ -38,24 +38,6 @@ TEST(Criterion, FallsByTheLogarithmOfTheInformation) {
   }
 }
 
-TEST(Criterion, HasTheGradientOfItsDifferences) {
-  constexpr double kStep = 1e-6;
-  for (const Kind kind : {Kind::d_optimal, Kind::a_optimal, Kind::e_optimal, Kind::weighted}) {
-    const Criterion criterion = makeCriterion(kind);
-    const MatrixXd gradient = calcCostGradient(criterion, makeInformation());
-    for (Index i = 0; i < 3; ++i) {
-      for (Index j = 0; j <= i; ++j) {
-        MatrixXd change = MatrixXd::Zero(3, 3);
-        change(i, j) = change(j, i) = kStep;
-        const double difference =
-            calcCost(criterion, makeInformation() + change) - calcCost(criterion, makeInformation() - change);
-        const double expected = i == j ? gradient(i, j) : gradient(i, j) + gradient(j, i);
-        EXPECT_NEAR(difference / (2.0 * kStep), expected, 1e-8);
-      }
-    }
-  }
-}
-
 TEST(Criterion, IsNanWhereNothingIsDetermined) {
   EXPECT_TRUE(std::isnan(calcCost({Kind::d_optimal, {}}, MatrixXd::Zero(2, 2))));
 }
