@@ -12,6 +12,7 @@ from setuptools.command.build_ext import build_ext
 ROOT = Path(__file__).resolve().parent
 TARGET = "twinmap_python"
 SIMBODY = "twinmap_simbody.so"
+UNITS = "share/twinmap/units"
 
 
 def find_version():
@@ -56,7 +57,9 @@ class CMakeBuild(build_ext):
         target = Path(self.get_ext_fullpath(extension.name))
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(build / "framework" / "python" / "twinmap" / target.name, target)
-        shutil.copy2(next(build.glob(f"lib*/**/twinmap/{SIMBODY}")), target.parent)  # which the module loads from there
+        # which the module loads from there
+        shutil.copy2(next(build.glob(f"lib*/**/twinmap/{SIMBODY}")), target.parent)
+        shutil.copytree(build / UNITS, target.parent / UNITS, dirs_exist_ok=True)
 
 
 setup(

@@ -11,6 +11,9 @@ file(WRITE "${documents}/changelog" "twinmap (${CPACK_PACKAGE_VERSION}) stable; 
 
  -- ${CPACK_PACKAGE_CONTACT}  ${date}
 ")
+file(COPY "${CMAKE_CURRENT_LIST_DIR}/debian/lintian-overrides" DESTINATION "${documents}")
+file(MAKE_DIRECTORY "${root}/share/lintian/overrides")
+file(RENAME "${documents}/lintian-overrides" "${root}/share/lintian/overrides/twinmap")
 file(GLOB pages "${root}/share/man/man1/*.1")
 foreach(file "${documents}/changelog" ${pages})
   execute_process(COMMAND gzip -9 -n -f "${file}" COMMAND_ERROR_IS_FATAL ANY)

@@ -1,4 +1,14 @@
-# Every package comes from the distribution; scripts/install-dependencies lists them by name.
+# Every package comes from the distribution; scripts/install-dependencies lists them by name. Releases contain most of them
+# as static libraries (cmake/ReleaseLibraries.cmake), so that they need none of their system.
+set(TWINMAP_LIBRARIES "" CACHE PATH
+  "Static libraries to build with, as scripts/build-libraries makes them; empty: those of the distribution")
+if(TWINMAP_LIBRARIES)
+  if(NOT EXISTS "${TWINMAP_LIBRARIES}/state")
+    message(FATAL_ERROR "TWINMAP_LIBRARIES: '${TWINMAP_LIBRARIES}' has no libraries; scripts/build-libraries makes them")
+  endif()
+  list(PREPEND CMAKE_PREFIX_PATH "${TWINMAP_LIBRARIES}")
+endif()
+set(TWINMAP_IN_PROGRAM "$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>")
 find_package(Eigen3 3.4 REQUIRED)
 find_package(NLopt REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
@@ -12,47 +22,18 @@ find_package(yaml-cpp 0.7 REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
-# Static: Debian's shared HDF5 brings some thirty libraries of a network client, which twinmap would load at each start.
 set(HDF5_USE_STATIC_LIBRARIES ON)
 find_package(HDF5 REQUIRED COMPONENTS C)
 find_path(MATIO_INCLUDE_DIR matio.h REQUIRED)
-find_library(MATIO_LIBRARY libmatio.a REQUIRED) # with the same copy of HDF5
-# Debian's static libraries are for programs alone, as their code cannot be moved: shared libraries take the shared ones.
-find_library(HDF5_SHARED_LIBRARY hdf5_serial REQUIRED)
-find_library(MATIO_SHARED_LIBRARY matio REQUIRED)
-set(TWINMAP_IN_PROGRAM "$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>")
-add_library(twinmap_hdf5_library INTERFACE)
-target_include_directories(twinmap_hdf5_library SYSTEM INTERFACE ${HDF5_C_INCLUDE_DIRS})
-target_link_libraries(twinmap_hdf5_library INTERFACE
-  "$<IF:${TWINMAP_IN_PROGRAM},HDF5::HDF5,${HDF5_SHARED_LIBRARY}>")
-add_library(matio_static STATIC IMPORTED)
-set_target_properties(matio_static PROPERTIES
-  IMPORTED_LOCATION "${MATIO_LIBRARY}" INTERFACE_LINK_LIBRARIES HDF5::HDF5)
-add_library(matio INTERFACE)
-target_include_directories(matio SYSTEM INTERFACE "${MATIO_INCLUDE_DIR}")
-target_link_libraries(matio INTERFACE
-  "$<IF:${TWINMAP_IN_PROGRAM},matio_static,${MATIO_SHARED_LIBRARY}>" twinmap_hdf5_library)
-find_package(PkgConfig REQUIRED)
-pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
-pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
-find_package(pugixml REQUIRED)
+if(TWINMAP_LIBRARIES)
+  include(ReleaseLibraries)
+else()
+  include(DistributionLibraries)
+endif()
 
-# The Python package is for the distribution's Python, where pybind11 is; another one as Python3_EXECUTABLE.
-set(TWINMAP_BUILD_PYTHON AUTO CACHE STRING "Build the Python package: ON, OFF, or AUTO: where pybind11 is")
+# The Python package is for the distribution's Python; another one as Python3_EXECUTABLE.
+set(TWINMAP_BUILD_PYTHON AUTO CACHE STRING "Build the Python package: ON, OFF, or AUTO: where Python's headers and nanobind are")
 set(TWINMAP_HAS_PYTHON OFF)
 if(NOT TWINMAP_BUILD_PYTHON STREQUAL "OFF" AND NOT TWINMAP_SANITIZE)
-  if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
-    set(Python3_EXECUTABLE /usr/bin/python3)
-  endif()
-  set(PYBIND11_NOPYTHON ON) # its headers alone
-  if(TWINMAP_BUILD_PYTHON STREQUAL "AUTO")
-    find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
-    find_package(pybind11 2.10 QUIET CONFIG)
-  else()
-    find_package(Python3 REQUIRED COMPONENTS Interpreter Development.Module)
-    find_package(pybind11 2.10 REQUIRED CONFIG)
-  endif()
-  if(Python3_Development.Module_FOUND AND pybind11_FOUND)
-    set(TWINMAP_HAS_PYTHON ON)
-  endif()
+  include(Nanobind)
 endif()

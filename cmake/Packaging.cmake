@@ -34,12 +34,12 @@ if(MKDOCS AND NOT TWINMAP_SANITIZE)
     DEPENDS ${pages} "${PROJECT_SOURCE_DIR}/scripts/docs" "${PROJECT_SOURCE_DIR}/scripts/mkdocs.yml"
     COMMENT "Documents as a site" VERBATIM)
   add_custom_target(twinmap_site ALL DEPENDS "${TWINMAP_SHARE}/html/index.html")
-  install(DIRECTORY "${TWINMAP_SHARE}/html/" DESTINATION "${CMAKE_INSTALL_DOCDIR}/html")
+  install(DIRECTORY "${TWINMAP_SHARE}/html/" DESTINATION "${CMAKE_INSTALL_DOCDIR}/html" COMPONENT documents)
 endif()
-install(DIRECTORY experiments/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples/experiments"
+install(DIRECTORY experiments/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/examples/experiments" COMPONENT documents
   PATTERN "*.fmu" EXCLUDE PATTERN "__pycache__" EXCLUDE)
-install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
+install(FILES README.md CHANGELOG.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT documents)
+install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}/docs" COMPONENT documents FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME twinmap)

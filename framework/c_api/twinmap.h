@@ -53,7 +53,7 @@ typedef enum twinmap_posterior {
   TWINMAP_POSTERIOR_SURROGATE = 3
 } twinmap_posterior;
 
-/** "0.1.0". */
+/** "0.2.0". */
 TWINMAP_API const char* twinmap_get_version(void);
 
 /** What went wrong in this thread's last function that did not return TWINMAP_OK; "" before. Valid until this

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <pybind11/numpy.h>
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
 
 #include <Eigen/Core>
 #include <memory>
@@ -8,16 +9,17 @@
 
 namespace twinmap::python {
 
-namespace py = pybind11;
+namespace nb = nanobind;
 
 /// A matrix whose rows follow one another in memory, as the columns of Eigen's do: (n, d) here is d x n
 /// there.
-using Rows = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Rows = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
+using Array = nb::ndarray<nb::numpy, double>;
 
 /// The rows as columns, where they are: no copy. The array must outlive the view. Throws
 /// std::invalid_argument, naming `what`, unless it has two dimensions with `width` columns.
 inline Eigen::Map<const Eigen::MatrixXd> viewColumns(const Rows& rows, Eigen::Index width, const char* what) {
-  if (rows.ndim() != 2 || rows.shape(1) != width) {
+  if (rows.ndim() != 2 || static_cast<Eigen::Index>(rows.shape(1)) != width) {
     throw std::invalid_argument(std::string(what) + ": must be an array of shape (n, " +
                                 std::to_string(width) + ")");
   }
@@ -25,17 +27,22 @@ inline Eigen::Map<const Eigen::MatrixXd> viewColumns(const Rows& rows, Eigen::In
 }
 
 /// Columns (d x n) become the array (n, d), which owns their memory: no copy.
-inline py::array_t<double> moveToRows(Eigen::MatrixXd&& columns) {
+inline Array moveToRows(Eigen::MatrixXd&& columns) {
   auto owned = std::make_unique<Eigen::MatrixXd>(std::move(columns));
-  const py::array::ShapeContainer shape{owned->cols(), owned->rows()};
+  const auto shape = {static_cast<std::size_t>(owned->cols()), static_cast<std::size_t>(owned->rows())};
   double* data = owned->data();
-  const py::capsule owner(owned.release(),
-                          [](void* matrix) { delete static_cast<Eigen::MatrixXd*>(matrix); });
-  return py::array_t<double>(shape, data, owner);
+  const nb::capsule owner(owned.release(),
+                          [](void* matrix) noexcept { delete static_cast<Eigen::MatrixXd*>(matrix); });
+  return Array(data, shape, owner);
 }
 
-inline py::array_t<double> copyVector(const Eigen::Ref<const Eigen::VectorXd>& values) {
-  return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
+inline Array copyVector(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  auto owned = std::make_unique<Eigen::VectorXd>(values);
+  const auto shape = {static_cast<std::size_t>(owned->size())};
+  double* data = owned->data();
+  const nb::capsule owner(owned.release(),
+                          [](void* vector) noexcept { delete static_cast<Eigen::VectorXd*>(vector); });
+  return Array(data, shape, owner);
 }
 
 }  // namespace twinmap::python

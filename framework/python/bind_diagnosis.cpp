@@ -1,4 +1,3 @@
-#include <pybind11/stl.h>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/diagnosis/problem/sensor_faults.hpp"
@@ -26,7 +25,7 @@ std::vector<RecordedTable> readTables(const std::vector<Recorded>& recordings,
 }
 
 /// JSON and text, as `twinmap diagnose` prints them, and the corrected experiment. page: its file, or "".
-py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& recordings,
+nb::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& recordings,
                              const std::vector<double>& starts, const Known& known,
                              const std::vector<std::string>& accepted, const std::string& page) {
   const MeasurementReader& reader = map.getReader();
@@ -45,7 +44,7 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
   }
   Diagnosis diagnosis;
   {
-    const py::gil_scoped_release release;
+    const nb::gil_scoped_release release;
     const DiagnosedRecordings read = explainSensors(inferrer, experiment, list.get(), values);
     diagnosis = diagnoseExplained(experiment, read, options);
     if (!page.empty()) {
@@ -53,29 +52,29 @@ py::tuple diagnoseRecordings(const PythonMap& map, const std::vector<Recorded>& 
                     makeDiagnosisPage(diagnosis, experiment, read.features, nameRecordings(sources, starts)));
     }
   }
-  return py::make_tuple(makeDiagnosisJson(diagnosis, names), makeDiagnosisTable(diagnosis, names),
+  return nb::make_tuple(makeDiagnosisJson(diagnosis, names), makeDiagnosisTable(diagnosis, names),
                         writeCorrected(diagnosis.corrected));
 }
 
 /// JSON and text, as `twinmap diagnose` without recordings prints them.
-py::tuple findBlindSpots(const PythonMap& map, const Known& known) {
+nb::tuple findBlindSpots(const PythonMap& map, const Known& known) {
   const MeasurementReader& reader = map.getReader();
   const RecordedFeatures recordings = makeEmptyRecordings(reader.getExperiment(), listKnown(known));
   std::vector<BlindSpot> spots;
   {
-    const py::gil_scoped_release release;
+    const nb::gil_scoped_release release;
     spots = calcBlindSpots(reader.getExperiment(), recordings, DiagnosisOptions{}.level);
   }
   const std::vector<ParameterSpec>& parameters = reader.getExperiment().model.parameters;
-  return py::make_tuple(makeBlindSpotJson(spots, parameters), makeBlindSpotTable(spots, parameters));
+  return nb::make_tuple(makeBlindSpotJson(spots, parameters), makeBlindSpotTable(spots, parameters));
 }
 
 }  // namespace
 
-void bindDiagnosis(py::module_& module) {
-  module.def("diagnose", &diagnoseRecordings, py::arg("map"), py::arg("recordings"), py::arg("starts"),
-             py::arg("known"), py::arg("accepted"), py::arg("page"));
-  module.def("find_blind_spots", &findBlindSpots, py::arg("map"), py::arg("known"));
+void bindDiagnosis(nb::module_& module) {
+  module.def("diagnose", &diagnoseRecordings, nb::arg("map"), nb::arg("recordings"), nb::arg("starts"),
+             nb::arg("known"), nb::arg("accepted"), nb::arg("page"));
+  module.def("find_blind_spots", &findBlindSpots, nb::arg("map"), nb::arg("known"));
 }
 
 }  // namespace twinmap::python

@@ -5,20 +5,20 @@
 namespace twinmap::python {
 namespace {
 
-namespace py = pybind11;
+namespace nb = nanobind;
 
-py::object textOrNone(const std::string& text) {
-  return text.empty() ? py::object(py::none()) : py::object(py::str(text));
+nb::object textOrNone(const std::string& text) {
+  return text.empty() ? nb::object(nb::none()) : nb::object(nb::str(text.c_str()));
 }
 
-py::object numberOrNone(int number) {
-  return number == 0 ? py::object(py::none()) : py::object(py::int_(number));
+nb::object numberOrNone(int number) {
+  return number == 0 ? nb::object(nb::none()) : nb::object(nb::int_(number));
 }
 
 /// Raises the exception of that name, with the parts of the message as attributes.
 void raise(const char* name, const ExperimentError& error) {
-  const py::object type = py::module_::import("twinmap._errors").attr(name);
-  py::dict parts;
+  const nb::object type = nb::module_::import_("twinmap._errors").attr(name);
+  nb::dict parts;
   if (const InputProblem* problem = error.getProblem()) {
     parts["file"] = textOrNone(problem->where.file);
     parts["line"] = numberOrNone(problem->where.line);
@@ -27,13 +27,13 @@ void raise(const char* name, const ExperimentError& error) {
     parts["value"] = textOrNone(problem->value);
     parts["rule"] = textOrNone(problem->rule);
   }
-  const py::object raised = type(py::str(error.what()), **parts);
+  const nb::object raised = type(nb::str(error.what()), **parts);
   PyErr_SetObject(type.ptr(), raised.ptr());
 }
 
-void translate(std::exception_ptr pointer) {
+void translate(const std::exception_ptr& pointer, void*) {
   try {
-    std::rethrow_exception(std::move(pointer));
+    std::rethrow_exception(pointer);
   } catch (const MeasurementError& error) {
     raise("MeasurementError", error);
   } catch (const ExperimentError& error) {
@@ -43,8 +43,8 @@ void translate(std::exception_ptr pointer) {
 
 }  // namespace
 
-void bindErrors(py::module_&) {
-  py::register_local_exception_translator(&translate);
+void bindErrors(nb::module_&) {
+  nb::register_exception_translator(&translate);
 }
 
 }  // namespace twinmap::python

@@ -1,5 +1,3 @@
-#include <pybind11/stl.h>
-
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -30,7 +28,7 @@ std::string writeYaml(const PythonExperiment& experiment) {
 }
 
 /// Responses (n, rows), and of each sample why it failed, or "".
-py::tuple simulate(const PythonExperiment& experiment, const Rows& points, int threads) {
+nb::tuple simulate(const PythonExperiment& experiment, const Rows& points, int threads) {
   const Eigen::MatrixXd parameters = viewColumns(points, countSampled(experiment.getSpec().model), "points");
   std::atomic<bool> stop{false};
   Trajectories trajectories;
@@ -46,25 +44,24 @@ py::tuple simulate(const PythonExperiment& experiment, const Rows& points, int t
   for (const SampleStatus& status : trajectories.statuses) {
     reasons.push_back(status.ok ? "" : status.reason);
   }
-  return py::make_tuple(moveToRows(std::move(trajectories.responses)), reasons);
+  return nb::make_tuple(moveToRows(std::move(trajectories.responses)), reasons);
 }
 
-py::array_t<double> extract(const PythonExperiment& experiment, const Rows& responses) {
+Array extract(const PythonExperiment& experiment, const Rows& responses) {
   const auto columns = viewColumns(responses, experiment.getLayout().getRowCount(), "responses");
   Eigen::MatrixXd features;
   {
-    const py::gil_scoped_release release;
+    const nb::gil_scoped_release release;
     features = experiment.getExtractor()->extract(columns);
   }
   return moveToRows(std::move(features));
 }
 
-py::array_t<double> addMeasurementNoise(const PythonExperiment& experiment, const Rows& responses,
-                                        std::uint64_t seed) {
+Array addMeasurementNoise(const PythonExperiment& experiment, const Rows& responses, std::uint64_t seed) {
   const auto columns = viewColumns(responses, experiment.getLayout().getRowCount(), "responses");
   Eigen::MatrixXd noisy;
   {
-    const py::gil_scoped_release release;
+    const nb::gil_scoped_release release;
     noisy = addNoise(columns, ResponseNoise(experiment.getSpec().noise, experiment.getLayout()),
                      RandomStream(seed, RandomPurpose::kSingleNoise));
   }
@@ -73,32 +70,29 @@ py::array_t<double> addMeasurementNoise(const PythonExperiment& experiment, cons
 
 }  // namespace
 
-void bindExperiment(py::module_& module) {
-  const auto release = py::call_guard<py::gil_scoped_release>();
-  py::class_<PythonExperiment>(module, "Experiment")
+void bindExperiment(nb::module_& module) {
+  const auto release = nb::call_guard<nb::gil_scoped_release>();
+  nb::class_<PythonExperiment>(module, "Experiment")
       .def_static("load", &loadExperiment, release)
       .def_static("parse", &parse, release)
       .def("write_yaml", &writeYaml, release)
-      .def_property_readonly("name", [](const PythonExperiment& e) { return e.getSpec().name.text; })
-      .def_property_readonly("description", [](const PythonExperiment& e) { return e.getSpec().description; })
-      .def_property_readonly("seed", [](const PythonExperiment& e) { return e.getSpec().seed; })
-      .def_property_readonly("is_sweep", &PythonExperiment::isSweep)
-      .def_property_readonly("parameters",
-                             [](const PythonExperiment& e) { return describe(e.getSpec().model.parameters); })
-      .def_property_readonly(
-          "sampled", [](const PythonExperiment& e) { return describe(collectSampled(e.getSpec().model)); })
-      .def_property_readonly("inputs",
-                             [](const PythonExperiment& e) { return describe(e.getSpec().model.inputs); })
-      .def_property_readonly("outputs",
-                             [](const PythonExperiment& e) { return describeOutputs(e.getLayout()); })
-      .def_property_readonly("features",
-                             [](const PythonExperiment& e) { return describe(e.getExtractor()->getInfos()); })
-      .def_property_readonly("times",
-                             [](const PythonExperiment& e) { return copyVector(e.getLayout().times); })
-      .def_property_readonly("modes", [](const PythonExperiment& e) { return e.getLayout().modes; })
-      .def("simulate", &simulate, py::arg("points"), py::arg("threads"))
-      .def("extract", &extract, py::arg("responses"))
-      .def("add_noise", &addMeasurementNoise, py::arg("responses"), py::arg("seed"));
+      .def_prop_ro("name", [](const PythonExperiment& e) { return e.getSpec().name.text; })
+      .def_prop_ro("description", [](const PythonExperiment& e) { return e.getSpec().description; })
+      .def_prop_ro("seed", [](const PythonExperiment& e) { return e.getSpec().seed; })
+      .def_prop_ro("is_sweep", &PythonExperiment::isSweep)
+      .def_prop_ro("parameters",
+                   [](const PythonExperiment& e) { return describe(e.getSpec().model.parameters); })
+      .def_prop_ro("sampled",
+                   [](const PythonExperiment& e) { return describe(collectSampled(e.getSpec().model)); })
+      .def_prop_ro("inputs", [](const PythonExperiment& e) { return describe(e.getSpec().model.inputs); })
+      .def_prop_ro("outputs", [](const PythonExperiment& e) { return describeOutputs(e.getLayout()); })
+      .def_prop_ro("features",
+                   [](const PythonExperiment& e) { return describe(e.getExtractor()->getInfos()); })
+      .def_prop_ro("times", [](const PythonExperiment& e) { return copyVector(e.getLayout().times); })
+      .def_prop_ro("modes", [](const PythonExperiment& e) { return e.getLayout().modes; })
+      .def("simulate", &simulate, nb::arg("points"), nb::arg("threads"))
+      .def("extract", &extract, nb::arg("responses"))
+      .def("add_noise", &addMeasurementNoise, nb::arg("responses"), nb::arg("seed"));
 }
 
 }  // namespace twinmap::python

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <pybind11/stl.h>
 
 #include "framework/diagnosis/missing_term.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
@@ -32,7 +31,7 @@ Eigen::MatrixXd takeDraws(const SimulatorPosterior& joint, std::size_t parameter
 }
 
 /// JSON and text, as `twinmap infer --joint` prints them, and the joint draws (n, p) with their weights.
-py::tuple inferTogether(const std::string& path, const std::vector<Recorded>& recordings,
+nb::tuple inferTogether(const std::string& path, const std::vector<Recorded>& recordings,
                         const RecordedWindows& windows, const Known& known, std::optional<int> draws) {
   std::vector<std::string> texts;
   for (const auto& [name, value] : known) {
@@ -46,11 +45,11 @@ py::tuple inferTogether(const std::string& path, const std::vector<Recorded>& re
   }
   JointInference inferred;
   {
-    const py::gil_scoped_release release;
+    const nb::gil_scoped_release release;
     inferred = inferrer.infer(list.get());
     testModel(path, list.get(), texts, inferred);
   }
-  return py::make_tuple(makeJointJson(inferred, inferrer.getParameters()),
+  return nb::make_tuple(makeJointJson(inferred, inferrer.getParameters()),
                         makeJointTable(inferred, inferrer.getParameters()),
                         moveToRows(takeDraws(inferred.joint, inferrer.getParameters().size())),
                         copyVector(inferred.joint.weights));
@@ -73,21 +72,21 @@ Eigen::VectorXd readTrials(const PythonMap& map, const std::vector<Recorded>& re
 
 }  // namespace
 
-void bindJoint(py::module_& module) {
+void bindJoint(nb::module_& module) {
   module.def(
       "read_trials",
       [](const PythonMap& map, const std::vector<Recorded>& recordings) {
         return copyVector(readTrials(map, recordings));
       },
-      py::arg("map"), py::arg("recordings"));
+      nb::arg("map"), nb::arg("recordings"));
   module.def(
       "infer_together",
       [](const std::string& path, const std::vector<Recorded>& recordings, const std::vector<double>& starts,
          std::optional<double> windows, const Known& known, std::optional<int> draws) {
         return inferTogether(path, recordings, {starts, windows}, known, draws);
       },
-      py::arg("path"), py::arg("recordings"), py::arg("starts"), py::arg("windows"), py::arg("known"),
-      py::arg("draws"));
+      nb::arg("path"), nb::arg("recordings"), nb::arg("starts"), nb::arg("windows"), nb::arg("known"),
+      nb::arg("draws"));
 }
 
 }  // namespace twinmap::python

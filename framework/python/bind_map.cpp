@@ -1,5 +1,3 @@
-#include <pybind11/stl.h>
-
 #include <algorithm>
 
 #include "framework/data/measurement/files/read_table.hpp"
@@ -49,7 +47,7 @@ struct InferredEstimate {
 /// Infers by a borrowed session, without the interpreter's lock; `infer` takes it and the known inputs.
 template <class Infer>
 InferredEstimate inferBy(PythonMap& map, const InferRequest& request, const Infer& infer) {
-  const py::gil_scoped_release release;
+  const nb::gil_scoped_release release;
   const Eigen::VectorXd known = collectKnown(map.getReader().getExperiment().model.inputs, request.known);
   PythonMap::Session session = map.borrow(request.options);
   InferredMeasurement measurement = infer(*session, known);
@@ -102,7 +100,7 @@ InferredEstimate inferSegments(const PythonMap& map, const std::string& name,
   const SegmentInference inference(experiment, length, collectKnown(experiment.model.inputs, request.known),
                                    request.options.posterior_draws);
   const Table table = readOrMakeTable(name, columns, inference.listColumns());
-  const py::gil_scoped_release release;
+  const nb::gil_scoped_release release;
   InferredMeasurement measurement = inference.infer(table, request.start);
   Eigen::MatrixXd& points = measurement.posterior->estimate.draws.points;
   const auto machine = static_cast<Eigen::Index>(experiment.model.parameters.size());
@@ -112,17 +110,17 @@ InferredEstimate inferSegments(const PythonMap& map, const std::string& name,
   return {std::move(measurement), std::move(estimate)};
 }
 
-py::tuple predict(const PythonMap& map, const Rows& features, const Rows& known, int threads) {
+nb::tuple predict(const PythonMap& map, const Rows& features, const Rows& known, int threads) {
   const Inferrer& inferrer = map.getTrained();
   const auto inputs = static_cast<Eigen::Index>(inferrer.getExperiment().model.inputs.size());
   const auto columns = viewColumns(features, inferrer.getExtractor().getFeatureCount(), "X");
   const auto settings = viewColumns(known, inputs, "inputs");
   Estimates estimates;
   {
-    const py::gil_scoped_release release;
+    const nb::gil_scoped_release release;
     estimates = inferrer.getMap().predict(columns, settings, threads);
   }
-  return py::make_tuple(moveToRows(std::move(estimates.mean)), moveToRows(std::move(estimates.stddev)));
+  return nb::make_tuple(moveToRows(std::move(estimates.mean)), moveToRows(std::move(estimates.stddev)));
 }
 
 std::unique_ptr<PythonMap> loadMap(const std::string& run_or_maps) {
@@ -150,29 +148,27 @@ std::string writeText(const PythonMap& map, const InferredEstimate& inferred) {
   return makeInferenceTable(inferred.measurement, getModel(map).parameters, listFeatures(map, inferred));
 }
 
-void bindPosterior(py::module_& module) {
+void bindPosterior(nb::module_& module) {
   using Posterior = PosteriorEstimate;
-  py::class_<Posterior>(module, "Posterior")
-      .def_property_readonly("mean", [](const Posterior& s) { return copyVector(s.estimate.mean); })
-      .def_property_readonly("stddev", [](const Posterior& s) { return copyVector(s.estimate.stddev); })
-      .def_property_readonly("quantiles",
-                             [](const Posterior& s) { return moveToRows(calcQuantiles(s.estimate)); })
-      .def_property_readonly(
-          "draws", [](const Posterior& s) { return moveToRows(Eigen::MatrixXd(s.estimate.draws.points)); })
-      .def_property_readonly("weights",
-                             [](const Posterior& s) { return copyVector(s.estimate.draws.weights); })
-      .def_property_readonly("source", [](const Posterior& s) { return toString(s.source); })
-      .def_readonly("effective_sample_size", &Posterior::effective_sample_size)
-      .def_readonly("pareto_shape", &Posterior::pareto_shape)
-      .def_readonly("evaluations", &Posterior::evaluations)
-      .def_readonly("message", &Posterior::message);
+  nb::class_<Posterior>(module, "Posterior")
+      .def_prop_ro("mean", [](const Posterior& s) { return copyVector(s.estimate.mean); })
+      .def_prop_ro("stddev", [](const Posterior& s) { return copyVector(s.estimate.stddev); })
+      .def_prop_ro("quantiles", [](const Posterior& s) { return moveToRows(calcQuantiles(s.estimate)); })
+      .def_prop_ro("draws",
+                   [](const Posterior& s) { return moveToRows(Eigen::MatrixXd(s.estimate.draws.points)); })
+      .def_prop_ro("weights", [](const Posterior& s) { return copyVector(s.estimate.draws.weights); })
+      .def_prop_ro("source", [](const Posterior& s) { return toString(s.source); })
+      .def_ro("effective_sample_size", &Posterior::effective_sample_size)
+      .def_ro("pareto_shape", &Posterior::pareto_shape)
+      .def_ro("evaluations", &Posterior::evaluations)
+      .def_ro("message", &Posterior::message);
 }
 
 /// Of each component that may fit its weight, mean and standard deviation; none of an estimate that is one.
-py::list listComponents(const Mixture& mixture) {
-  py::list components;
+nb::list listComponents(const Mixture& mixture) {
+  nb::list components;
   for (Eigen::Index c = 0; c < mixture.countComponents(); ++c) {
-    components.append(py::make_tuple(mixture.weights[c], copyVector(Eigen::VectorXd(mixture.means.col(c))),
+    components.append(nb::make_tuple(mixture.weights[c], copyVector(Eigen::VectorXd(mixture.means.col(c))),
                                      copyVector(Eigen::VectorXd(mixture.stddevs.col(c)))));
   }
   return components;
@@ -187,59 +183,57 @@ std::vector<Intervals> listIntervals(const Estimate& estimate, Coverage coverage
   return intervals;
 }
 
-void bindEstimate(py::module_& module) {
+void bindEstimate(nb::module_& module) {
   using Inferred = InferredEstimate;
-  py::class_<Inferred>(module, "Estimate")
-      .def_property_readonly("mean", [](const Inferred& i) { return copyVector(i.estimate.mean); })
-      .def_property_readonly("stddev", [](const Inferred& i) { return copyVector(i.estimate.stddev); })
-      .def_property_readonly("covariance",
-                             [](const Inferred& i) { return moveToRows(i.estimate.calcCovariance()); })
-      .def_property_readonly("intervals50",
-                             [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k50); })
-      .def_property_readonly("intervals95",
-                             [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k95); })
-      .def_property_readonly("components",
-                             [](const Inferred& i) { return listComponents(i.estimate.mixture); })
-      .def_property_readonly("statuses", [](const Inferred& i) { return i.estimate.statuses; })
-      .def_property_readonly("method", [](const Inferred& i) { return i.estimate.getMethod(); })
-      .def_property_readonly("posterior", [](const Inferred& i) { return i.measurement.posterior; });
-  py::class_<InferRequest>(module, "InferRequest")
-      .def(py::init(&makeRequest), py::arg("known"), py::arg("start"), py::arg("refine"),
-           py::arg("posterior_draws"), py::arg("posterior_from"), py::arg("profiles"));
+  nb::class_<Inferred>(module, "Estimate")
+      .def_prop_ro("mean", [](const Inferred& i) { return copyVector(i.estimate.mean); })
+      .def_prop_ro("stddev", [](const Inferred& i) { return copyVector(i.estimate.stddev); })
+      .def_prop_ro("covariance", [](const Inferred& i) { return moveToRows(i.estimate.calcCovariance()); })
+      .def_prop_ro("intervals50", [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k50); })
+      .def_prop_ro("intervals95", [](const Inferred& i) { return listIntervals(i.estimate, Coverage::k95); })
+      .def_prop_ro("components", [](const Inferred& i) { return listComponents(i.estimate.mixture); })
+      .def_prop_ro("statuses", [](const Inferred& i) { return i.estimate.statuses; })
+      .def_prop_ro("method", [](const Inferred& i) { return i.estimate.getMethod(); })
+      .def_prop_ro("posterior", [](const Inferred& i) { return i.measurement.posterior; });
+  nb::class_<InferRequest>(module, "InferRequest")
+      .def(
+          "__init__",
+          [](InferRequest* made, Known known, std::optional<double> start, std::optional<bool> refine,
+             int posterior_draws, const std::string& posterior_from, bool profiles) {
+            new (made) InferRequest(
+                makeRequest(std::move(known), start, refine, posterior_draws, posterior_from, profiles));
+          },
+          nb::arg("known"), nb::arg("start"), nb::arg("refine"), nb::arg("posterior_draws"),
+          nb::arg("posterior_from"), nb::arg("profiles"));
 }
 
 }  // namespace
 
-void bindMap(py::module_& module) {
+void bindMap(nb::module_& module) {
   bindPosterior(module);
   bindEstimate(module);
-  py::class_<PythonMap>(module, "Map")
-      .def_static("load", &loadMap, py::call_guard<py::gil_scoped_release>())
+  nb::class_<PythonMap>(module, "Map")
+      .def_static("load", &loadMap, nb::call_guard<nb::gil_scoped_release>())
       .def_static("of_experiment", &makeMap)
       .def("infer_file", &inferFile)
       .def("infer_columns", &inferColumns)
       .def("infer_features", &inferFeatures)
-      .def("infer_segments", &inferSegments, py::arg("name"), py::arg("columns"), py::arg("length"),
-           py::arg("request"))
+      .def("infer_segments", &inferSegments, nb::arg("name"), nb::arg("columns"), nb::arg("length"),
+           nb::arg("request"))
       .def("write_json", &writeJson)
       .def("write_text", &writeText)
-      .def("predict", &predict, py::arg("features"), py::arg("inputs"), py::arg("threads"))
-      .def_property_readonly("parameters",
-                             [](const PythonMap& m) { return describe(getModel(m).parameters); })
-      .def_property_readonly("unknown",
-                             [](const PythonMap& m) { return describe(collectUnknown(getModel(m))); })
-      .def_property_readonly("inputs", [](const PythonMap& m) { return describe(getModel(m).inputs); })
-      .def_property_readonly("outputs",
-                             [](const PythonMap& m) { return describeOutputs(m.getReader().getLayout()); })
-      .def_property_readonly(
-          "features", [](const PythonMap& m) { return describe(m.getReader().getExtractor().getInfos()); })
-      .def_property_readonly("name",
-                             [](const PythonMap& m) { return m.getReader().getExperiment().name.text; })
-      .def_property_readonly(
-          "residual_correlation",
-          [](const PythonMap& m) {
-            return moveToRows(Eigen::MatrixXd(m.getTrained().getMap().getResidualCorrelation()));
-          })
+      .def("predict", &predict, nb::arg("features"), nb::arg("inputs"), nb::arg("threads"))
+      .def_prop_ro("parameters", [](const PythonMap& m) { return describe(getModel(m).parameters); })
+      .def_prop_ro("unknown", [](const PythonMap& m) { return describe(collectUnknown(getModel(m))); })
+      .def_prop_ro("inputs", [](const PythonMap& m) { return describe(getModel(m).inputs); })
+      .def_prop_ro("outputs", [](const PythonMap& m) { return describeOutputs(m.getReader().getLayout()); })
+      .def_prop_ro("features",
+                   [](const PythonMap& m) { return describe(m.getReader().getExtractor().getInfos()); })
+      .def_prop_ro("name", [](const PythonMap& m) { return m.getReader().getExperiment().name.text; })
+      .def_prop_ro("residual_correlation",
+                   [](const PythonMap& m) {
+                     return moveToRows(Eigen::MatrixXd(m.getTrained().getMap().getResidualCorrelation()));
+                   })
       .def("write_experiment",
            [](const PythonMap& m) { return writeExperiment(m.getReader().getExperiment()); });
 }

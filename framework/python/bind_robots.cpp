@@ -1,4 +1,3 @@
-#include <pybind11/stl.h>
 
 #include "framework/base/text/source_location.hpp"
 #include "framework/python/bindings.hpp"
@@ -11,7 +10,7 @@
 namespace twinmap::python {
 namespace {
 
-namespace py = pybind11;
+namespace nb = nanobind;
 using Texts = std::vector<std::string>;
 
 /// The experiment, and what it leaves out of the file.
@@ -47,11 +46,11 @@ std::pair<std::string, std::string> updateUrdf(const std::string& path, const st
 
 }  // namespace
 
-void bindRobots(py::module_& module) {
-  const auto release = py::call_guard<py::gil_scoped_release>();
-  module.def("import_urdf", &importUrdf, py::arg("path"), py::arg("flies"), py::arg("parameters"),
-             py::arg("joints"), py::arg("stops"), release);
-  module.def("update_urdf", &updateUrdf, py::arg("path"), py::arg("json"), py::arg("anyway"), release);
+void bindRobots(nb::module_& module) {
+  const auto release = nb::call_guard<nb::gil_scoped_release>();
+  module.def("import_urdf", &importUrdf, nb::arg("path"), nb::arg("flies"), nb::arg("parameters"),
+             nb::arg("joints"), nb::arg("stops"), release);
+  module.def("update_urdf", &updateUrdf, nb::arg("path"), nb::arg("json"), nb::arg("anyway"), release);
 }
 
 }  // namespace twinmap::python

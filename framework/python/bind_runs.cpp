@@ -1,5 +1,3 @@
-#include <pybind11/functional.h>
-#include <pybind11/stl.h>
 
 #include <mutex>
 
@@ -17,7 +15,7 @@
 namespace twinmap::python {
 namespace {
 
-namespace py = pybind11;
+namespace nb = nanobind;
 
 /// How a run is to be done.
 struct Request {
@@ -110,7 +108,7 @@ void run(const PythonExperiment& experiment, const Request& request,
 }
 
 /// Cases, of them complete, and the names and reasons of those that failed.
-py::tuple sweep(const PythonExperiment& experiment, const Request& request,
+nb::tuple sweep(const PythonExperiment& experiment, const Request& request,
                 const std::function<void(const Progress&)>& progress) {
   SweepResult result;
   runWithProgress(request.threads, progress, [&](const RunControl& control) {
@@ -127,27 +125,27 @@ py::tuple sweep(const PythonExperiment& experiment, const Request& request,
   for (const FailedCase& failure : result.failures) {
     failures.emplace_back(failure.name, failure.reason);
   }
-  return py::make_tuple(result.cases, result.complete, failures);
+  return nb::make_tuple(result.cases, result.complete, failures);
 }
 
 }  // namespace
 
-void bindRuns(py::module_& module) {
-  py::class_<Progress>(module, "Progress", "How far a stage of a run is")
-      .def_readonly("stage", &Progress::stage)
-      .def_readonly("done", &Progress::done)
-      .def_readonly("total", &Progress::total)
-      .def_readonly("failed", &Progress::failed)
-      .def_readonly("work", &Progress::work);
-  py::class_<Request>(module, "RunRequest")
-      .def(py::init<>())
-      .def_readwrite("folder", &Request::folder)
-      .def_readwrite("store", &Request::store)
-      .def_readwrite("command", &Request::command)
-      .def_readwrite("threads", &Request::threads)
-      .def_readwrite("memory", &Request::memory);
-  module.def("run", &run, py::arg("experiment"), py::arg("request"), py::arg("progress") = py::none());
-  module.def("sweep", &sweep, py::arg("experiment"), py::arg("request"), py::arg("progress") = py::none());
+void bindRuns(nb::module_& module) {
+  nb::class_<Progress>(module, "Progress", "How far a stage of a run is")
+      .def_ro("stage", &Progress::stage)
+      .def_ro("done", &Progress::done)
+      .def_ro("total", &Progress::total)
+      .def_ro("failed", &Progress::failed)
+      .def_ro("work", &Progress::work);
+  nb::class_<Request>(module, "RunRequest")
+      .def(nb::init<>())
+      .def_rw("folder", &Request::folder)
+      .def_rw("store", &Request::store)
+      .def_rw("command", &Request::command)
+      .def_rw("threads", &Request::threads)
+      .def_rw("memory", &Request::memory);
+  module.def("run", &run, nb::arg("experiment"), nb::arg("request"), nb::arg("progress") = nb::none());
+  module.def("sweep", &sweep, nb::arg("experiment"), nb::arg("request"), nb::arg("progress") = nb::none());
 }
 
 }  // namespace twinmap::python

@@ -1,4 +1,3 @@
-#include <pybind11/stl.h>
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
@@ -18,7 +17,7 @@ std::pair<std::string, std::string> view(const PythonExperiment& experiment, con
   const ExperimentSpec& spec = experiment.getSpec();
   requireOneTrial(spec, "a picture is of one");
   const Eigen::MatrixXd columns = viewColumns(points, countSampled(spec.model), "points");
-  const py::gil_scoped_release release;
+  const nb::gil_scoped_release release;
   view::Scene scene = view::makeScene(spec, columns.col(0), names.front());
   for (Eigen::Index i = 1; i < columns.cols(); ++i) {
     view::addMotion(spec, columns.col(i), names[static_cast<std::size_t>(i)], scene);
@@ -28,8 +27,8 @@ std::pair<std::string, std::string> view(const PythonExperiment& experiment, con
 
 }  // namespace
 
-void bindView(py::module_& module) {
-  module.def("view", &view, py::arg("experiment"), py::arg("points"), py::arg("names"));
+void bindView(nb::module_& module) {
+  module.def("view", &view, nb::arg("experiment"), nb::arg("points"), nb::arg("names"));
 }
 
 }  // namespace twinmap::python

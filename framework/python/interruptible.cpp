@@ -1,6 +1,6 @@
 #include "framework/python/interruptible.hpp"
 
-#include <pybind11/pybind11.h>
+#include <nanobind/nanobind.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -10,7 +10,7 @@
 namespace twinmap::python {
 namespace {
 
-namespace py = pybind11;
+namespace nb = nanobind;
 
 /// Work under way on a thread of its own.
 class Worker {
@@ -51,7 +51,7 @@ class Worker {
 std::exception_ptr lookForInterruption(const std::function<void()>& tick) {
   try {
     if (PyErr_CheckSignals() != 0) {
-      throw py::error_already_set();
+      throw nb::python_error();
     }
     if (tick) {
       tick();
@@ -71,7 +71,7 @@ void runInterruptibly(const std::function<void()>& work, std::atomic<bool>& stop
   Worker worker(work);
   for (bool ended = false; !ended;) {
     {
-      const py::gil_scoped_release release;
+      const nb::gil_scoped_release release;
       ended = worker.waitFor(kPeriod);
     }
     if (!interruption) {

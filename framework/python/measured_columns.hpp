@@ -1,7 +1,7 @@
 #pragma once
 
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
 
 #include <optional>
 #include <string>
@@ -14,9 +14,9 @@
 
 namespace twinmap::python {
 
-namespace py = pybind11;
+namespace nb = nanobind;
 
-using Vector = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Vector = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using NamedVectors = std::vector<std::pair<std::string, Vector>>;
 
 /// Throws MeasurementError for an array of other than one dimension; `what` names it.

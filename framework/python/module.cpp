@@ -1,5 +1,3 @@
-#include <pybind11/stl.h>
-
 #include <twinmap/build_info.hpp>
 
 #include "framework/base/worker/worker_process.hpp"
@@ -7,7 +5,8 @@
 #include "framework/python/bindings.hpp"
 #include "framework/simulation/simulator_team.hpp"
 
-PYBIND11_MODULE(_twinmap, module) {
+NB_MODULE(_twinmap, module) {
+  nanobind::set_leak_warnings(false);  // what still lives when the interpreter ends is the user's affair
   module.doc() = "The compiled part of the package twinmap";
   module.attr("__version__") = twinmap::kVersion;
   module.def(

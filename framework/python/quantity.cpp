@@ -1,7 +1,6 @@
 #include "framework/python/quantity.hpp"
 
 #include <fmt/core.h>
-#include <pybind11/stl.h>
 
 #include <cmath>
 #include <limits>
@@ -11,7 +10,7 @@
 namespace twinmap::python {
 namespace {
 
-namespace py = pybind11;
+namespace nb = nanobind;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
@@ -49,13 +48,13 @@ std::vector<Quantity> describeOutputs(const ResponseLayout& layout) {
   return quantities;
 }
 
-void bindQuantity(py::module_& module) {
-  py::class_<Quantity>(module, "Quantity", "A parameter, feature, known input or output")
-      .def_readonly("name", &Quantity::name)
-      .def_readonly("unit", &Quantity::unit)
-      .def_readonly("description", &Quantity::description)
-      .def_readonly("lower", &Quantity::lower)
-      .def_readonly("upper", &Quantity::upper)
+void bindQuantity(nb::module_& module) {
+  nb::class_<Quantity>(module, "Quantity", "A parameter, feature, known input or output")
+      .def_ro("name", &Quantity::name)
+      .def_ro("unit", &Quantity::unit)
+      .def_ro("description", &Quantity::description)
+      .def_ro("lower", &Quantity::lower)
+      .def_ro("upper", &Quantity::upper)
       .def("__repr__", &toText);
 }
 

@@ -6,10 +6,12 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string_view>
 
+#include "framework/base/files/installed_file.hpp"
 #include "framework/base/text/number_text.hpp"
 
 namespace twinmap {
@@ -44,11 +46,14 @@ void addTorques(ut_system* system) {
   }
 }
 
-/// UDUNITS' own database of SI units, read once.
+constexpr const char* kDatabase = "share/twinmap/units/udunits2.xml";
+
+/// UDUNITS' own database of SI units, read once: the one that is installed with twinmap.
 const ut_system& getUnitSystem() {
   static const std::unique_ptr<ut_system, FreeSystem> kSystem([] {
     ut_set_error_message_handler(ut_ignore);
-    ut_system* system = ut_read_xml(nullptr);
+    const std::filesystem::path database = findInstalled(kDatabase);
+    ut_system* system = database.empty() ? nullptr : ut_read_xml(database.c_str());
     if (system != nullptr) {
       addDegree(system);
       addTorques(system);
@@ -56,8 +61,9 @@ const ut_system& getUnitSystem() {
     return system;
   }());
   if (kSystem == nullptr) {
-    throw std::runtime_error(
-        "the units database of UDUNITS-2 cannot be read; is libudunits2-data installed?");
+    throw std::runtime_error(std::string("units cannot be read: there is no ") + kDatabase + " in " +
+                             findOwnFolder().string() +
+                             " or a folder above it; install twinmap with its share/");
   }
   return *kSystem;
 }

@@ -1,16 +1,16 @@
 """What users may give, brought to one form."""
 import json
 import os
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
-import pandas as pd
 
 from ._errors import ExperimentError
+from ._tables import DataFrame, Table, make_frame_of_rows
 from ._twinmap import Quantity, get_default_threads
 
 PathLike = Union[str, "os.PathLike[str]"]
-Points = Union[np.ndarray, pd.DataFrame, Mapping[str, Any], Sequence[Any]]
+Points = Union[np.ndarray, DataFrame, Mapping[str, Any], Sequence[Any]]
 
 
 def choose_threads(threads: Optional[int]) -> int:
@@ -61,7 +61,7 @@ def _fill_columns(values: Mapping[str, Any], quantities: Sequence[Quantity], wha
 
 def make_points(points: Points, quantities: Sequence[Quantity], what: str) -> np.ndarray:
     """An array (n, len(quantities)); of a mapping or DataFrame, what is not named is at the centre of its bounds."""
-    if isinstance(points, pd.DataFrame):
+    if isinstance(points, DataFrame) and not isinstance(points, Table):
         points = {str(name): points[name].to_numpy() for name in points.columns}
     if isinstance(points, Mapping):
         return _fill_columns(points, quantities, what)
@@ -69,9 +69,9 @@ def make_points(points: Points, quantities: Sequence[Quantity], what: str) -> np
     return array[np.newaxis, :] if array.ndim == 1 else array
 
 
-def list_columns(measurement: Union[pd.DataFrame, Mapping[str, Any]]) -> List[Tuple[str, np.ndarray]]:
+def list_columns(measurement: Union[DataFrame, Mapping[str, Any]]) -> List[Tuple[str, np.ndarray]]:
     """Name and values of each column of numbers; a DataFrame's index, where it has a name, is a column as well."""
-    if isinstance(measurement, pd.DataFrame):
+    if isinstance(measurement, DataFrame) and not isinstance(measurement, Table):
         if measurement.index.name is not None:
             measurement = measurement.reset_index()
         measurement = measurement.select_dtypes("number")
@@ -83,9 +83,8 @@ def list_known(known: Optional[Mapping[str, float]]) -> List[Tuple[str, float]]:
     return [(name, float(value)) for name, value in (known or {}).items()]
 
 
-def describe_quantities(quantities: Sequence[Quantity]) -> "pd.DataFrame":
+def describe_quantities(quantities: Sequence[Quantity]) -> DataFrame:
     """A row for each."""
-    rows: Dict[str, Dict[str, Any]] = {
-        q.name: {"unit": q.unit, "lower": q.lower, "upper": q.upper, "description": q.description} for q in quantities
-    }
-    return pd.DataFrame.from_dict(rows, orient="index", columns=["unit", "lower", "upper", "description"])
+    columns = ["unit", "lower", "upper", "description"]
+    rows = [{name: getattr(quantity, name) for name in columns} for quantity in quantities]
+    return make_frame_of_rows(rows, columns, [quantity.name for quantity in quantities])

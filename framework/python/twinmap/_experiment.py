@@ -6,7 +6,6 @@ import warnings
 from typing import Any, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
-import pandas as pd
 
 from . import _twinmap
 from ._arguments import PathLike, Points, choose_threads, list_known, list_overrides, make_points
@@ -15,6 +14,7 @@ from ._map import Estimate, Measurement, infer
 from ._progress import ProgressChoice, ProgressReport
 from ._recordings import Diagnosis, Recording, diagnose, read_recording
 from ._results import Results
+from ._tables import DataFrame, make_frame, make_frame_of_rows, read_csv
 from ._twinmap import Quantity
 from ._view import View
 
@@ -58,9 +58,9 @@ class Responses:
         first = len(self.outputs) * len(self.times) + self._modes
         return self.rows[:, first : first + self._modes]
 
-    def to_frame(self, sample: int = 0) -> pd.DataFrame:
+    def to_frame(self, sample: int = 0) -> DataFrame:
         """One sample as a measurement that Map.infer() takes: a column t (s), then one for each output."""
-        return pd.DataFrame({"t": self.times, **{name: self[name][sample] for name in self.outputs}})
+        return make_frame({"t": self.times, **{name: self[name][sample] for name in self.outputs}})
 
     def __repr__(self) -> str:
         failed = len(self) - int(self.ok.sum())
@@ -278,14 +278,15 @@ class Experiment:
         """
         return diagnose(self._get_inferring(), recordings, starts, known, accept, page)
 
-    def find_blind_spots(self, *, known: Optional[Mapping[str, float]] = None) -> pd.DataFrame:
+    def find_blind_spots(self, *, known: Optional[Mapping[str, float]] = None) -> DataFrame:
         """Before any measurement: of each term that the model may lack its unit, the size that is noticed in 95 % of
         measurements (`noticed_from`), and by how many standard deviations it has moved each parameter by then."""
         spots = json.loads(_twinmap.find_blind_spots(self._get_inferring(), list_known(known))[0])["blind_spots"]
         rows = [
             {"unit": spot["unit"], "noticed_from": spot["noticed_from"], **spot.get("shifts", {})} for spot in spots
         ]
-        return pd.DataFrame(rows, index=pd.Index([spot["term"] for spot in spots], name="term"))
+        columns = list(dict.fromkeys(name for row in rows for name in row))
+        return make_frame_of_rows(rows, columns, [spot["term"] for spot in spots], "term")
 
     def _get_inferring(self) -> _twinmap.Map:
         if self._inferring is None:
@@ -349,7 +350,7 @@ def sweep(
     progress: ProgressChoice = False,
     store: Optional[PathLike] = None,
     memory: float = 0.0,
-) -> pd.DataFrame:
+) -> DataFrame:
     """Runs a sweep, as `twinmap run` does, and gives its sweep.csv: a row for each case and parameter, with a column for
     each swept key, then those of Results.metrics.
 
@@ -368,4 +369,4 @@ def sweep(
     if failures:
         reasons = "; ".join(f"{name}: {reason}" for name, reason in failures)
         raise RuntimeError(f"{len(failures)} of {cases} cases failed ({complete} are complete): {reasons}")
-    return pd.read_csv(os.path.join(request.folder, "sweep.csv"))
+    return read_csv(os.path.join(request.folder, "sweep.csv"))

@@ -7,14 +7,14 @@ import os
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
-import pandas as pd
 
 from . import _twinmap
 from ._arguments import PathLike, Points, choose_threads, list_columns, list_known, make_points
 from ._recordings import Recording, list_trials
+from ._tables import DataFrame, make_frame
 from ._twinmap import Quantity
 
-Measurement = Union[PathLike, pd.DataFrame, Mapping[str, Any], np.ndarray]
+Measurement = Union[PathLike, DataFrame, Mapping[str, Any], np.ndarray]
 _DRAWS = 512
 _PROBABILITIES = [0.025, 0.16, 0.5, 0.84, 0.975]
 
@@ -38,16 +38,15 @@ class Posterior:
         if self.reliable:
             self.mean: np.ndarray = sampled.mean
             self.stddev: np.ndarray = sampled.stddev
-            self.quantiles = pd.DataFrame(
-                sampled.quantiles, columns=names, index=pd.Index(_PROBABILITIES, name="probability")
-            )
-            self.draws = pd.DataFrame(sampled.draws, columns=unknown[: sampled.draws.shape[1]])
+            self._quantiles: np.ndarray = sampled.quantiles
+            self.quantiles = make_frame(dict(zip(names, self._quantiles.T)), _PROBABILITIES, "probability")
+            self.draws = make_frame(dict(zip(unknown, sampled.draws.T)))
             self.weights: np.ndarray = sampled.weights
 
     @property
     def interval(self) -> np.ndarray:
         """Between the quantiles at 2.5 and 97.5 % (p, 2): lower and upper bound."""
-        return self.quantiles.iloc[[0, -1]].to_numpy().T
+        return self._quantiles[[0, -1]].T
 
 
 class Estimate:
@@ -87,22 +86,23 @@ class Estimate:
         return json.loads(self._map.write_json(self._estimate))
 
     @functools.cached_property
-    def derived(self) -> pd.DataFrame:
+    def derived(self) -> DataFrame:
         """A row for each quantity that the experiment derives: unit, mean, stddev, lower, upper (of 95 %)."""
         found = self.details.get("derived", {})
         columns = {"unit": "unit", "mean": "mean", "stddev": "sd", "lower": "lower", "upper": "upper"}
-        return pd.DataFrame(
+        return make_frame(
             {column: [value[key] for value in found.values()] for column, key in columns.items()},
-            index=pd.Index(list(found), name="quantity"),
+            list(found),
+            "quantity",
         )
 
     @functools.cached_property
-    def profiles(self) -> Dict[str, pd.DataFrame]:
+    def profiles(self) -> Dict[str, DataFrame]:
         """Profile likelihoods by parameter, where they were asked for: a row for each value that it is held at, with all
         parameters as they fit best there and `log_likelihood_ratio` to the best of all."""
         found = self.details.get("posterior", {}).get("profiles", {})
         return {
-            name: pd.DataFrame({**one["parameters"], "log_likelihood_ratio": one["log_likelihood_ratio"]})
+            name: make_frame({**one["parameters"], "log_likelihood_ratio": one["log_likelihood_ratio"]})
             for name, one in found.items()
         }
 
@@ -121,12 +121,13 @@ class Estimate:
         """The outermost bounds of the 95 % intervals (p, 2): lower and upper."""
         return np.array([(intervals[0][0], intervals[-1][1]) for intervals in self.intervals95])
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_frame(self) -> DataFrame:
         """A row for each parameter: unit, mean, stddev, lower, upper."""
         lower, upper = self.interval.T
-        return pd.DataFrame(
+        return make_frame(
             {"unit": self.units, "mean": self.mean, "stddev": self.stddev, "lower": lower, "upper": upper},
-            index=pd.Index(self.names, name="parameter"),
+            self.names,
+            "parameter",
         )
 
     def write_urdf(self, urdf: PathLike, out: PathLike, *, anyway: bool = False) -> None:
@@ -156,7 +157,7 @@ class Estimate:
 
 def infer(map_: _twinmap.Map, measurement: Measurement, request: _twinmap.InferRequest) -> Estimate:
     """By a map or an experiment alone (Map.infer)."""
-    if isinstance(measurement, (pd.DataFrame, Mapping)):
+    if isinstance(measurement, (DataFrame, Mapping)):
         estimate = map_.infer_columns(list_columns(measurement), request)
     elif isinstance(measurement, (str, os.PathLike)):
         estimate = map_.infer_file(os.fspath(measurement), request)

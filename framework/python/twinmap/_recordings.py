@@ -4,12 +4,12 @@ import os
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
-import pandas as pd
 
 from . import _twinmap
 from ._arguments import PathLike, list_columns, list_known
+from ._tables import DataFrame, make_frame, make_frame_of_rows, make_series
 
-Recording = Union[PathLike, pd.DataFrame, Mapping[str, Any]]
+Recording = Union[PathLike, DataFrame, Mapping[str, Any]]
 _Columns = Optional[List[Tuple[str, np.ndarray]]]
 
 
@@ -22,7 +22,7 @@ def read_recording(recording: Recording, number: int) -> Tuple[str, _Columns]:
 
 def list_recordings(recordings: Union[Recording, Sequence[Recording]]) -> List[Tuple[str, _Columns]]:
     """Of one recording or several."""
-    if isinstance(recordings, (str, os.PathLike, pd.DataFrame, Mapping)):
+    if isinstance(recordings, (str, os.PathLike, DataFrame, Mapping)):
         recordings = [recordings]
     return [read_recording(recording, number) for number, recording in enumerate(recordings, start=1)]
 
@@ -36,11 +36,12 @@ def list_trials(
     return [(trial, name, columns) for trial, of in recordings.items() for name, columns in list_recordings(of)]
 
 
-def _tabulate(parameters: Mapping[str, Mapping[str, Any]]) -> pd.DataFrame:
+def _tabulate(parameters: Mapping[str, Mapping[str, Any]]) -> DataFrame:
     columns = {"unit": "unit", "mean": "mean", "stddev": "sd", "lower": "lower", "upper": "upper"}
-    return pd.DataFrame(
+    return make_frame(
         {column: [value.get(key) for value in parameters.values()] for column, key in columns.items()},
-        index=pd.Index(list(parameters), name="parameter"),
+        list(parameters),
+        "parameter",
     )
 
 
@@ -60,12 +61,12 @@ class JointEstimate:
         agreement = self.details.get("agreement", {})
         self.agrees: Optional[bool] = agreement.get("agrees")
         self.p_value: Optional[float] = agreement.get("p_value")
-        self.contradictions = pd.DataFrame(
-            agreement.get("contradictions", []), columns=["parameter", "first", "second", "distance"]
+        self.contradictions = make_frame_of_rows(
+            agreement.get("contradictions", []), ["parameter", "first", "second", "distance"]
         )
-        self.alone = pd.Series({trial["label"]: trial["status"] for trial in self.details["trials"]}, dtype=object)
+        self.alone = make_series({trial["label"]: trial["status"] for trial in self.details["trials"]})
         names = list(self.details.get("parameters", {}))
-        self.draws = pd.DataFrame(draws if len(draws) else np.empty((0, len(names))), columns=names)
+        self.draws = make_frame(dict(zip(names, draws.T if len(draws) else np.empty((len(names), 0)))))
         self.weights = weights
 
     @property
@@ -78,7 +79,7 @@ class JointEstimate:
         """Of the parameters (p, p); empty where there is no estimate."""
         return np.array(self.details.get("covariance", np.empty((0, 0))))
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_frame(self) -> DataFrame:
         """A row for each parameter: unit, mean, stddev, lower, upper; none where there is no estimate."""
         return _tabulate(self.details.get("parameters", {}))
 
@@ -128,24 +129,22 @@ class Diagnosis:
         self.terms: List[str] = self.details["found"]
         self.complete: bool = self.details["complete"]
 
-    def to_frame(self) -> pd.DataFrame:
+    def to_frame(self) -> DataFrame:
         """A row for each candidate of each step: step, term, size, stddev, unit, z, log_evidence, share of the misfit."""
         columns = {"term": "term", "size": "size", "stddev": "sd", "unit": "unit", "z": "z"}
         columns.update({"log_evidence": "log_evidence", "share": "share"})
-        return pd.DataFrame(
-            [
-                {"step": number, **{column: candidate[key] for column, key in columns.items()}}
-                for number, step in enumerate(self.details["steps"], start=1)
-                for candidate in step["candidates"]
-            ],
-            columns=["step", *columns],
-        )
+        rows = [
+            {"step": number, **{column: candidate[key] for column, key in columns.items()}}
+            for number, step in enumerate(self.details["steps"], start=1)
+            for candidate in step["candidates"]
+        ]
+        return make_frame_of_rows(rows, ["step", *columns])
 
-    def before(self) -> pd.DataFrame:
+    def before(self) -> DataFrame:
         """The parameters by the model as it is: unit, mean, stddev, lower, upper."""
         return _tabulate(self.details["before"].get("parameters", {}))
 
-    def after(self) -> pd.DataFrame:
+    def after(self) -> DataFrame:
         """The parameters, and the sizes of the terms, by the corrected model."""
         return _tabulate(self.details["after"].get("parameters", {}))
 

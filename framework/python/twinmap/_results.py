@@ -5,10 +5,10 @@ import os
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
-import pandas as pd
 
 from ._arguments import PathLike
 from ._map import Map
+from ._tables import DataFrame, read_csv
 
 # Tables that have a row for each of these are indexed by it.
 _INDEXES = {"metrics": "parameter"}
@@ -23,7 +23,7 @@ class Results:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self._read: Dict[str, pd.DataFrame] = {}
+        self._read: Dict[str, DataFrame] = {}
 
     @staticmethod
     def load(folder: PathLike) -> "Results":
@@ -37,17 +37,16 @@ class Results:
         """The names of the tables that there are."""
         return sorted(file.stem for file in self.folder.glob("*.csv"))
 
-    def table(self, name: str) -> pd.DataFrame:
+    def table(self, name: str) -> DataFrame:
         """The table of NAME.csv. Raises KeyError where the run has left none."""
         if name not in self._read:
             file = self.folder / f"{name}.csv"
             if not file.is_file():
                 raise KeyError(f"{name}: this run has {', '.join(self.list_tables())}")
-            table = pd.read_csv(file)
-            self._read[name] = table.set_index(_INDEXES[name]) if name in _INDEXES else table
+            self._read[name] = read_csv(file, _INDEXES.get(name))
         return self._read[name]
 
-    def __getattr__(self, name: str) -> pd.DataFrame:
+    def __getattr__(self, name: str) -> DataFrame:
         if name.startswith("_"):
             raise AttributeError(name)
         try:

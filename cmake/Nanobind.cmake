@@ -1,0 +1,41 @@
+# nanobind, which binds the Python package: of a Python that has it (a build by pip), else from the index once per build folder
+# and file of requirements, as the files of the report come from npm. Sets TWINMAP_HAS_PYTHON.
+if(NOT Python3_EXECUTABLE AND EXISTS /usr/bin/python3)
+  set(Python3_EXECUTABLE /usr/bin/python3)
+endif()
+set(wanted QUIET)
+if(NOT TWINMAP_BUILD_PYTHON STREQUAL "AUTO")
+  set(wanted REQUIRED)
+endif()
+find_package(Python3 3.9 ${wanted} COMPONENTS Interpreter Development.Module)
+
+set(requirements "${PROJECT_SOURCE_DIR}/framework/python/nanobind.txt")
+set(folder "${PROJECT_BINARY_DIR}/nanobind")
+if(Python3_Development.Module_FOUND)
+  execute_process(COMMAND "${Python3_EXECUTABLE}" -m nanobind --include_dir
+    OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  if(found)
+    cmake_path(GET found PARENT_PATH TWINMAP_NANOBIND)
+  elseif("${requirements}" IS_NEWER_THAN "${folder}/done")
+    execute_process(COMMAND "${Python3_EXECUTABLE}" -m pip --quiet --disable-pip-version-check download
+        --no-deps --only-binary :all: --require-hashes --requirement "${requirements}" --dest "${folder}"
+      RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE message)
+    file(GLOB wheels "${folder}/nanobind-*.whl")
+    if(NOT failed AND wheels)
+      file(ARCHIVE_EXTRACT INPUT ${wheels} DESTINATION "${folder}")
+      file(TOUCH "${folder}/done")
+    elseif(NOT TWINMAP_BUILD_PYTHON STREQUAL "AUTO")
+      message(FATAL_ERROR "nanobind cannot be had, which the Python package needs: ${message}")
+    endif()
+  endif()
+  if(NOT found AND EXISTS "${folder}/done")
+    set(TWINMAP_NANOBIND "${folder}/nanobind")
+  endif()
+endif()
+
+if(TWINMAP_NANOBIND)
+  set(TWINMAP_HAS_PYTHON ON)
+  message(STATUS "Found nanobind: ${TWINMAP_NANOBIND}")
+else()
+  message(STATUS "No Python package: Python's headers or nanobind are missing")
+endif()
