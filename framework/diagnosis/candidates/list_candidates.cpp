@@ -88,14 +88,27 @@ std::vector<TermCandidate> listTrialCandidates(const ExperimentSpec& combined,
 std::vector<TermCandidate> listCandidates(const ExperimentSpec& experiment, const ModelSizes& sizes) {
   const ModelSpec& model = experiment.model;
   std::vector<TermCandidate> candidates = listForceCandidates(sizes);
-  for (const std::vector<TermCandidate>& more :
-       {listBodyCandidates(model, sizes), listOutputCandidates(model, sizes),
-        listSignalCandidates(model, sizes), listOwnCandidates(experiment.candidates, sizes),
-        listMemoryCandidates(model, sizes), listLawCandidates(model, sizes),
-        listStartCandidates(model, sizes), listLoadCandidates(model, sizes)}) {
-    candidates.insert(candidates.end(), more.begin(), more.end());
-  }
+  const auto add = [&](const std::vector<TermCandidate>& more, TermPlace place) {
+    for (const TermCandidate& one : more) {
+      candidates.push_back(one);
+      candidates.back().place = place;
+    }
+  };
+  add(listBodyCandidates(model, sizes), TermPlace::kMachine);
+  add(listOutputCandidates(model, sizes), TermPlace::kSensors);
+  add(listSignalCandidates(model, sizes), TermPlace::kInputs);
+  add(listOwnCandidates(experiment.candidates, sizes), TermPlace::kMachine);
+  add(listMemoryCandidates(model, sizes), TermPlace::kMachine);
+  add(listLawCandidates(model, sizes), TermPlace::kMachine);
+  add(listStartCandidates(model, sizes), TermPlace::kStart);
+  add(listLoadCandidates(model, sizes), TermPlace::kMachine);
+  add(listContactCandidates(model, sizes), TermPlace::kMachine);
   return candidates;
+}
+
+const char* getName(TermPlace place) {
+  constexpr const char* kNames[] = {"machine", "start", "inputs", "sensors"};
+  return kNames[static_cast<int>(place)];
 }
 
 void addScanned(const TermCandidate& candidate, double first, double factor, int count,

@@ -16,6 +16,12 @@ struct OwnScale {
   double reach = 5.0;  ///< more than the steps of a scan
 };
 
+/// What a term is of.
+enum class TermPlace { kMachine, kStart, kInputs, kSensors };
+
+/// "machine", "start", "inputs", "sensors"
+const char* getName(TermPlace place);
+
 /// Adds a term to a model that has the parameter `coefficient`. own_scales: numbers, or parameters.
 using AddTerm = std::function<void(ModelSpec& model, const std::string& coefficient,
                                    const std::vector<std::string>& own_scales)>;
@@ -35,6 +41,7 @@ struct TermCandidate {
   std::vector<AddTerm> add_to_trials{};
   /// Whether the coefficient is the share, 0 to 1, in which it takes the place of what the model has.
   bool is_share = false;
+  TermPlace place = TermPlace::kMachine;
 
   const AddTerm& getAdd(std::size_t trial) const {
     return add_to_trials.empty() ? add : add_to_trials[trial];

@@ -35,6 +35,10 @@ std::vector<TermCandidate> listMemoryCandidates(const ModelSpec& model, const Mo
 /// bristles.
 std::vector<TermCandidate> listLawCandidates(const ModelSpec& model, const ModelSizes& sizes);
 
+/// Another power of the depth, and more loss of energy, of each contact: elastic stops, play, points on
+/// planes.
+std::vector<TermCandidate> listContactCandidates(const ModelSpec& model, const ModelSizes& sizes);
+
 /// Another place and speed of each coordinate at the start, where these are not unknown anyway.
 std::vector<TermCandidate> listStartCandidates(const ModelSpec& model, const ModelSizes& sizes);
 

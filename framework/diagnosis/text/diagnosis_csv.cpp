@@ -7,15 +7,15 @@
 namespace twinmap {
 
 std::string makeDiagnosisCsv(const Diagnosis& diagnosis, const std::string& source) {
-  std::vector<CsvRow> rows{{"source", "step", "rank", "term", "size", "sd", "unit", "own_scale",
+  std::vector<CsvRow> rows{{"source", "step", "rank", "of", "term", "size", "sd", "unit", "own_scale",
                             "own_scale_unit", "z", "p_value", "share", "log_evidence", "fitted", "status"}};
   for (std::size_t s = 0; s < diagnosis.steps.size(); ++s) {
     const DiagnosisStep& step = diagnosis.steps[s];
     for (std::size_t i = 0; i < step.ranked.size(); ++i) {
       const TermFinding& one = step.ranked[i];
       const bool has_scale = !one.candidate.own_scales.empty();
-      rows.push_back({source, std::to_string(s + 1), std::to_string(i + 1), one.candidate.term,
-                      toText(one.estimate), toText(one.stddev), one.candidate.unit,
+      rows.push_back({source, std::to_string(s + 1), std::to_string(i + 1), getName(one.candidate.place),
+                      one.candidate.term, toText(one.estimate), toText(one.stddev), one.candidate.unit,
                       has_scale ? toText(one.candidate.own_scales.front().value) : "",
                       has_scale ? one.candidate.own_scales.front().unit : "", toText(one.z),
                       toText(one.p_value), toText(one.share), toText(one.log_evidence),

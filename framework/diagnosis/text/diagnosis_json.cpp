@@ -29,12 +29,19 @@ Json makeScalesJson(const TermCandidate& candidate) {
 }
 
 Json makeFindingJson(const TermFinding& finding, const std::vector<ParameterSpec>& parameters) {
-  Json json{{"term", finding.candidate.term}, {"meaning", finding.candidate.meaning},
-            {"size", finding.estimate},       {"sd", finding.stddev},
-            {"unit", finding.candidate.unit}, {"z", finding.z},
-            {"p_value", finding.p_value},     {"log_evidence", finding.log_evidence},
-            {"share", finding.share},         {"chi_square", finding.chi_square},
-            {"fitted", finding.fitted},       {"shifts", nameShifts(finding.shifts, parameters)}};
+  Json json{{"term", finding.candidate.term},
+            {"meaning", finding.candidate.meaning},
+            {"of", getName(finding.candidate.place)},
+            {"size", finding.estimate},
+            {"sd", finding.stddev},
+            {"unit", finding.candidate.unit},
+            {"z", finding.z},
+            {"p_value", finding.p_value},
+            {"log_evidence", finding.log_evidence},
+            {"share", finding.share},
+            {"chi_square", finding.chi_square},
+            {"fitted", finding.fitted},
+            {"shifts", nameShifts(finding.shifts, parameters)}};
   if (!std::isfinite(finding.log_evidence)) {
     json["log_evidence"] = nullptr;  // the fit with it failed
   }

@@ -138,15 +138,21 @@ std::string describeProcess(const Diagnosis& diagnosis) {
 }
 
 TextRows listTermRows(const DiagnosisStep& step, const std::vector<ParameterSpec>& parameters) {
-  constexpr std::size_t kShownRivals = 4;  // beside those that are tied
-  TextRows rows{{"term", "size", "sd", "unit", "z", "explains", "log evidence", "parameters move (sd)"}};
-  const std::size_t shown = std::min(step.ranked.size(), step.tied + kShownRivals);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const TermFinding& one = step.ranked[i];
-    rows.push_back({one.candidate.term, toShortText(one.estimate, kFigureDigits),
-                    toShortText(one.stddev, kRoughDigits), one.candidate.unit, fmt::format("{:+.1f}", one.z),
-                    fmt::format("{:.0f} %", 100.0 * one.share), fmt::format("{:.1f}", one.log_evidence),
-                    describeShifts(one.shifts, parameters)});
+  constexpr std::size_t kShownRivals = 3;  // of a place, beside those that are tied
+  TextRows rows{
+      {"of", "term", "size", "sd", "unit", "z", "explains", "log evidence", "parameters move (sd)"}};
+  for (const TermPlace place :
+       {TermPlace::kMachine, TermPlace::kStart, TermPlace::kInputs, TermPlace::kSensors}) {
+    std::size_t rivals = 0;
+    for (std::size_t i = 0; i < step.ranked.size(); ++i) {
+      const TermFinding& one = step.ranked[i];
+      if (one.candidate.place == place && (i < step.tied || rivals++ < kShownRivals)) {
+        rows.push_back({getName(place), one.candidate.term, toShortText(one.estimate, kFigureDigits),
+                        toShortText(one.stddev, kRoughDigits), one.candidate.unit,
+                        fmt::format("{:+.1f}", one.z), fmt::format("{:.0f} %", 100.0 * one.share),
+                        fmt::format("{:.1f}", one.log_evidence), describeShifts(one.shifts, parameters)});
+      }
+    }
   }
   return rows;
 }

@@ -91,6 +91,23 @@ void setProfiles(const PosteriorProblem& problem, ProblemSurface& whole, Simulat
   }
 }
 
+/// What each of several measurements leaves unknown besides the machine.
+std::vector<Index> listOwn(const PosteriorProblem& problem) {
+  std::vector<std::size_t> trials(problem.unknown.size(), 0);
+  for (const MeasuredTrial& trial : problem.trials) {
+    for (const Index i : trial.unknown) {
+      ++trials[static_cast<std::size_t>(i)];
+    }
+  }
+  std::vector<Index> own;
+  for (std::size_t i = 0; i < trials.size() && problem.trials.size() > 1; ++i) {
+    if (trials[i] == 1) {
+      own.push_back(static_cast<Index>(i));
+    }
+  }
+  return own;
+}
+
 /// The three of the least chi-square of 32 points all over the bounds.
 MatrixXd findLowest(MisfitSurface& surface) {
   constexpr int kPoints = 32, kLowest = 3;
@@ -135,8 +152,9 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   std::optional<SearchStage> stage(std::in_place, "search for the best fit");
   beginBest(collectNames(problem.unknown));
   const MatrixXd starts = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
-  const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed,
-                                       limitSearch(options.search, problem.drawn));
+  BasinSearchOptions search = limitSearch(options.search, problem.drawn);
+  search.nearly_known = listOwn(problem);
+  const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed, search);
   SimulatorPosterior posterior;
   posterior.starts = found.starts;
   posterior.simulations = surface.getSimulations();

@@ -256,17 +256,17 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
   return *found;
 }
 
-ExplainedRecording JointInferrer::explain(const Recording& recording,
+ExplainedRecording JointInferrer::explain(const Recording& recording, UnexplainedRecording read,
                                           const SimulatorPosteriorOptions& options) const {
   const Member& member = find(recording.trial);
-  std::optional<RecordingSetup> setup = followRecording(*member.reader, *recording.table, recording.start);
-  if (!setup) {  // with a simulator of its own, for a thread of its own
-    const ExperimentSpec& experiment = member.reader->getExperiment();
-    setup = RecordingSetup{
-        member.reader, std::make_shared<const SimulatorRefiner>(experiment, member.reader->getLayout(),
-                                                                member.simulator->getSimulator().clone())};
-  }
-  return explainRecording(*setup, *recording.table, recording.start, member.known, options);
+  const bool is_own = read.reader != member.reader;
+  const RecordingSetup setup =
+      is_own ? makeSetup(std::move(read.reader))
+             : RecordingSetup{member.reader, std::make_shared<const SimulatorRefiner>(
+                                                 member.reader->getExperiment(), member.reader->getLayout(),
+                                                 member.simulator->getSimulator().clone())};
+  return explainRecording(setup, std::move(read.found), *recording.table, recording.start, member.known,
+                          options);
 }
 
 std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Recording>& recordings,
@@ -276,6 +276,10 @@ std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Re
     options.search.settles = true;
     options.search.max_batches = 2;
   }
+  std::vector<UnexplainedRecording> read;  // all, before any of them takes its time
+  for (const Recording& one : recordings) {
+    read.push_back(readUnexplained(find(one.trial).reader, *one.table, one.start));
+  }
   const int threads = countThreads(), count = static_cast<int>(recordings.size());
   const bool side_by_side =
       count >= threads || static_cast<Index>(members_.front().simulator->getUnknown().size()) > kManyUnknown;
@@ -283,7 +287,7 @@ std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Re
   std::atomic<int> done{0};
   std::vector<ExplainedRecording> alone(recordings.size());
   runTasks(side_by_side ? threads : 1, recordings.size(), [&](std::size_t k) {
-    alone[k] = explain(recordings[k], options);
+    alone[k] = explain(recordings[k], std::move(read[k]), options);
     stage.show(++done, count);
   });
   return alone;

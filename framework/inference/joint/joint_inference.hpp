@@ -111,7 +111,9 @@ class JointInferrer {
   };
 
   const Member& find(const std::string& trial) const;
-  ExplainedRecording explain(const Recording& recording, const SimulatorPosteriorOptions& options) const;
+  /// With a simulator of its own, for a thread of its own.
+  ExplainedRecording explain(const Recording& recording, UnexplainedRecording read,
+                             const SimulatorPosteriorOptions& options) const;
   /// Of recordings that the model does not explain, or that disagree: of others it would take long.
   static void nameNoise(std::vector<ExplainedRecording>& alone, JointInference& inferred);
   /// Each with the faults that explain it alone. The recordings must outlive it.

@@ -70,8 +70,9 @@ InferredMeasurement DirectInference::infer(const Table& table, std::optional<dou
   if (followed == nullptr) {
     getReader().warnOfInterpolation(table, start);
   }
+  const RecordingSetup& setup = followed != nullptr ? *followed : setup_;
   ExplainedRecording explained =
-      explainRecording(followed != nullptr ? *followed : setup_, table, start, known, options_);
+      explainRecording(setup, readFeatures(*setup.reader, table, start), table, start, known, options_);
   nameUnstatedNoise(explained);
   InferredMeasurement& inferred = explained.inferred;
   if (followed != nullptr &&
@@ -92,7 +93,7 @@ const RecordingSetup* DirectInference::follow(const Table& table, std::optional<
   if (last == nullptr || !areSame(last->features, experiment->features) ||
       !areSame(last->model.excitation, experiment->model.excitation) ||
       !areSame(last->measurement.modes, experiment->measurement.modes)) {
-    followed_ = makeSetup(std::move(*experiment));
+    followed_ = makeSetup(std::make_shared<const MeasurementReader>(std::move(*experiment)));
   }
   return &*followed_;
 }

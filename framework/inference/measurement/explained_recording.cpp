@@ -241,14 +241,23 @@ MeasuredTrial ExplainedRecording::makeTrial() const {
   return trial;
 }
 
-std::optional<RecordingSetup> followRecording(const MeasurementReader& reader, const Table& table,
-                                              std::optional<double> start) {
-  std::optional<ExperimentSpec> followed = reader.follow(table, start);
-  return followed ? std::make_optional(makeSetup(std::move(*followed))) : std::nullopt;
+AvailableFeatures readFeatures(const MeasurementReader& reader, const Table& table,
+                               std::optional<double> start) {
+  AvailableFeatures found = reader.readAvailableFeatures(table, start);
+  requireModes(found, reader, table.source);
+  return found;
 }
 
-RecordingSetup makeSetup(ExperimentSpec followed) {
-  auto reader = std::make_shared<const MeasurementReader>(std::move(followed));
+UnexplainedRecording readUnexplained(std::shared_ptr<const MeasurementReader> reader, const Table& table,
+                                     std::optional<double> start) {
+  if (std::optional<ExperimentSpec> followed = reader->follow(table, start)) {
+    reader = std::make_shared<const MeasurementReader>(std::move(*followed));
+  }
+  AvailableFeatures found = readFeatures(*reader, table, start);
+  return {std::move(reader), std::move(found)};
+}
+
+RecordingSetup makeSetup(std::shared_ptr<const MeasurementReader> reader) {
   const ExperimentSpec& experiment = reader->getExperiment();
   const ResponseLayout& layout = reader->getLayout();
   auto simulator = std::make_shared<const SimulatorRefiner>(
@@ -257,12 +266,10 @@ RecordingSetup makeSetup(ExperimentSpec followed) {
   return {std::move(reader), std::move(simulator)};
 }
 
-ExplainedRecording explainRecording(const RecordingSetup& setup, const Table& table,
+ExplainedRecording explainRecording(const RecordingSetup& setup, AvailableFeatures found, const Table& table,
                                     std::optional<double> start, const VectorXd& known,
                                     const SimulatorPosteriorOptions& options) {
   const MeasurementReader& reader = *setup.reader;
-  AvailableFeatures found = reader.readAvailableFeatures(table, start);
-  requireModes(found, reader, table.source);
   RecordingSetup own = setup;
   if (auto supposed = makeOwnSimulator(reader, *setup.simulator, found, known, options)) {
     own.simulator = std::move(supposed);

@@ -15,13 +15,22 @@ struct RecordingSetup {
   std::shared_ptr<const SimulatorRefiner> simulator;  ///< for one thread, which OpenMP's others help
 };
 
-/// Of an experiment that Simbody has checked, with other times or excitation.
-RecordingSetup makeSetup(ExperimentSpec followed);
+/// What simulates what a reader of times or an excitation of its own reads.
+RecordingSetup makeSetup(std::shared_ptr<const MeasurementReader> reader);
 
-/// With the times and the excitation of a window of a table (MeasurementReader::follow); none where they are
-/// the experiment's.
-std::optional<RecordingSetup> followRecording(const MeasurementReader& reader, const Table& table,
-                                              std::optional<double> start);
+/// A recording, or a window of one, before it is explained.
+struct UnexplainedRecording {
+  std::shared_ptr<const MeasurementReader> reader;  ///< of its own times and excitation where it has them
+  AvailableFeatures found;
+};
+
+/// Throws MeasurementError where the table cannot be used.
+UnexplainedRecording readUnexplained(std::shared_ptr<const MeasurementReader> reader, const Table& table,
+                                     std::optional<double> start);
+
+/// What of a table explainRecording() looks at. Throws MeasurementError.
+AvailableFeatures readFeatures(const MeasurementReader& reader, const Table& table,
+                               std::optional<double> start);
 
 /// A recording, or a window of one, with the faults of its sensors and its clock that explain it.
 struct ExplainedRecording {
@@ -43,9 +52,8 @@ struct ExplainedRecording {
 ///   without what every other sample is off by (findAlternation)
 ///   a clock with faults (findClockFaults)
 /// Else the simple fault that explains a gross misfit, and what speaks against the model, are named. What is
-/// unknown of the excitation is supposed (makeOwnSimulator).
-/// Throws MeasurementError where the table cannot be used.
-ExplainedRecording explainRecording(const RecordingSetup& setup, const Table& table,
+/// unknown of the excitation is supposed (makeOwnSimulator). found: readFeatures() of the table.
+ExplainedRecording explainRecording(const RecordingSetup& setup, AvailableFeatures found, const Table& table,
                                     std::optional<double> start, const Eigen::VectorXd& known,
                                     const SimulatorPosteriorOptions& options);
 

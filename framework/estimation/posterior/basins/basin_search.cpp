@@ -227,8 +227,14 @@ class BasinHunt {
 BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_t seed,
                      const BasinSearchOptions& options) {
   const int most = options.starts * options.max_batches + options.probes;
-  const MatrixXd starts = makeStarts(surface.getDimensions(), seed, most);
-  BasinHunt hunt(surface, options.from_prior ? surface.spreadAsPrior(starts) : starts, options);
+  MatrixXd starts = makeStarts(surface.getDimensions(), seed, most);
+  if (options.from_prior) {
+    starts = surface.spreadAsPrior(starts);
+  }
+  for (Index k = 0; k < starts.cols() && given.cols() > 0; k += 2) {
+    starts(options.nearly_known, k) = given(options.nearly_known, 0);
+  }
+  BasinHunt hunt(surface, std::move(starts), options);
   MatrixXd scouts(surface.getDimensions(), options.scouts + given.cols());
   scouts.leftCols(options.scouts) = hunt.takeStarts(options.scouts);
   if (given.cols() > 0) {  // else it may have no rows either

@@ -34,6 +34,10 @@ struct BasinSearchOptions {
   int confirmations = 3;
   int max_batches = 4;
   int max_iterations = 25;
+  /// Unknown that are nearly known at the first of the given points, as initial states of each recording are
+  /// from that recording alone: every other start has them from there. All over their bounds they fit in
+  /// none.
+  std::vector<Eigen::Index> nearly_known{};
   /// Whether starts are spread as the prior is, not all over the bounds: of many parameters hardly any start
   /// is near enough else.
   bool from_prior = false;
