@@ -12,13 +12,19 @@
 namespace twinmap {
 
 struct TrackOptions {
-  std::filesystem::path tracking{};  ///< a file with a section `tracking:`; empty: the experiment's own
+  /// A file with a section `tracking:` (findTracking()); empty: all parameters walk at unknown rates.
+  std::filesystem::path tracking{};
   std::vector<std::string>
       use{};  ///< statuses of measurements that update although they do not by themselves
   std::vector<std::string> known{};  ///< "NAME=VALUE" of each input of the set-up
   int lag = 100;                     ///< measurements back that a late one may belong to
   SessionOptions session{};          ///< how each is inferred
 };
+
+/// The file to take `tracking:` from: `given` if there is one, else the experiment file itself where it has
+/// that section, else none. Throws ExperimentError where the given file has none.
+std::filesystem::path findTracking(const std::filesystem::path& run_or_experiment,
+                                   const std::filesystem::path& given);
 
 /// What is known of a measurement besides its table.
 struct MeasurementContext {
@@ -46,9 +52,13 @@ class TrackSession {
   /// The belief now: "measurements", "time", "parameters" (mean, sd, lower, upper, unit, rate), "covariance",
   /// "alarms", "forecast".
   Json getState() const;
-  /// track.csv: a row per measurement and parameter, filtered and smoothed.
+  /// track.csv: a row per measurement and parameter, filtered and smoothed. O(measurements).
   std::string makeHistory() const;
+  /// The page of `track --page` (makeTrackPage()). O(measurements).
+  std::string makePage() const;
   std::filesystem::path getHistoryFile() const;
+  /// Digests of all measurements that were counted, from the history.
+  std::vector<std::string> listCounted() const;
 
  private:
   struct Parts;

@@ -127,6 +127,23 @@ struct InferArguments {
   bool diagnose = false;            ///< of each model_mismatch, say at length what the model lacks
 };
 
+struct TrackArguments {
+  std::string run;                 ///< as of infer
+  std::vector<std::string> files;  ///< measurements, in any order within the lag
+  std::string state;               ///< file of the belief
+  std::string tracking;            ///< file with a section `tracking:`; "": the experiment file's own
+  std::string at;                  ///< time of the one measurement; "": by its table, else its number
+  std::optional<double> start;     ///< as of infer
+  std::string folder;              ///< whose files are tracked; "": none
+  bool follow = false;             ///< measurements from the standard input
+  std::vector<std::string> use;    ///< statuses that update all the same
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  int lag = 100;                   ///< measurements back that a late one may belong to
+  std::string history, page;       ///< files for track.csv and the page; "": none
+  std::optional<bool> refine;      ///< none: as the experiment says
+  int threads = 0;                 ///< 0: all
+};
+
 struct DiagnoseArguments {
   std::string run;                    ///< as of infer
   std::vector<std::string> files;     ///< measurements of one machine; empty: what a test is blind to
@@ -305,6 +322,7 @@ void compare(const CompareArguments& arguments);
 
 /// Infers the parameters of measurements and prints them with their trust status. Throws std::runtime_error
 /// after the last one if some could not be used.
+void track(const TrackArguments& arguments);
 void infer(const InferArguments& arguments);
 /// Of several recordings together: where trials, windows or joint are given.
 void inferJointly(const InferArguments& arguments);

@@ -16,7 +16,7 @@ struct Invocation {
 /// check, simulate, run, plan, design.
 void addExperimentCommands(CLI::App& app, const Invocation& invocation);
 
-/// infer, replay, export, noise, look.
+/// infer, track, replay, export, noise, look.
 void addMapCommands(CLI::App& app, const Invocation& invocation);
 
 /// import, view.
