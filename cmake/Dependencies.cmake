@@ -36,6 +36,10 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
 find_package(pugixml REQUIRED)
+find_package(Threads REQUIRED)
+# Measurements by MQTT, where the library is.
+pkg_check_modules(mosquitto IMPORTED_TARGET libmosquitto)
+set(TWINMAP_HAS_MQTT ${mosquitto_FOUND})
 
 # The Python package is for the distribution's Python, where pybind11 is; another one as Python3_EXECUTABLE.
 set(TWINMAP_BUILD_PYTHON AUTO CACHE STRING "Build the Python package: ON, OFF, or AUTO: where pybind11 is")
