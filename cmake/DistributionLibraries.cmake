@@ -20,3 +20,6 @@ find_package(PkgConfig REQUIRED)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
 find_package(pugixml REQUIRED)
+# Measurements by MQTT, where the library is.
+pkg_check_modules(mosquitto IMPORTED_TARGET libmosquitto)
+set(TWINMAP_HAS_MQTT ${mosquitto_FOUND})

@@ -37,3 +37,6 @@ string(REGEX REPLACE "\\.so$" ".a" TWINMAP_STATIC_OPENMP "${OpenMP_gomp_LIBRARY}
 get_target_property(openmp OpenMP::OpenMP_CXX INTERFACE_LINK_LIBRARIES)
 string(REGEX REPLACE "[^;]*libgomp\\.so" "$<IF:${TWINMAP_IN_PROGRAM},${TWINMAP_STATIC_OPENMP},\\0>" openmp "${openmp}")
 set_target_properties(OpenMP::OpenMP_CXX PROPERTIES INTERFACE_LINK_LIBRARIES "${openmp}")
+
+# The library of MQTT wants OpenSSL's: builds from the source alone have it.
+set(TWINMAP_HAS_MQTT OFF)

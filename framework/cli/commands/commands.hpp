@@ -127,6 +127,37 @@ struct InferArguments {
   bool diagnose = false;            ///< of each model_mismatch, say at length what the model lacks
 };
 
+struct TrackArguments {
+  std::string run;                 ///< as of infer
+  std::vector<std::string> files;  ///< measurements, in any order within the lag
+  std::string state;               ///< file of the belief
+  std::string tracking;            ///< file with a section `tracking:`; "": the experiment file's own
+  std::string at;                  ///< time of the one measurement; "": by its table, else its number
+  std::optional<double> start;     ///< as of infer
+  std::string folder;              ///< whose files are tracked; "": none
+  bool follow = false;             ///< measurements from the standard input
+  std::vector<std::string> use;    ///< statuses that update all the same
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  int lag = 100;                   ///< measurements back that a late one may belong to
+  std::string history, page;       ///< files for track.csv and the page; "": none
+  std::optional<bool> refine;      ///< none: as the experiment says
+  int threads = 0;                 ///< 0: all
+};
+
+struct ServeArguments {
+  std::string run;               ///< folder of a run, its maps.h5, or an experiment file
+  std::string state;             ///< file of the belief
+  std::string tracking;          ///< file with a section `tracking:`; "": the experiment's own
+  std::vector<std::string> use;  ///< statuses of measurements that update although they do not by themselves
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::optional<bool> refine;      ///< none: as the experiment says
+  int lag = 100;                   ///< measurements back that a late one may belong to
+  std::string listen = "127.0.0.1:8765";
+  std::string token_file;             ///< "": no token
+  std::string mqtt_host, mqtt_topic;  ///< "": no MQTT
+  int threads = 0;                    ///< 0: all
+};
+
 struct DiagnoseArguments {
   std::string run;                    ///< as of infer
   std::vector<std::string> files;     ///< measurements of one machine; empty: what a test is blind to
@@ -305,10 +336,14 @@ void compare(const CompareArguments& arguments);
 
 /// Infers the parameters of measurements and prints them with their trust status. Throws std::runtime_error
 /// after the last one if some could not be used.
+void track(const TrackArguments& arguments);
 void infer(const InferArguments& arguments);
 /// Of several recordings together: where trials, windows or joint are given.
 void inferJointly(const InferArguments& arguments);
 void inferInSegments(const InferArguments& arguments);
+
+/// Answers measurements over HTTP, and MQTT, until a signal comes.
+void serve(const ServeArguments& arguments);
 
 /// Says which terms a model lacks that is to explain measurements, and writes the corrected experiment; or,
 /// without measurements, what they would not notice.

@@ -7,6 +7,7 @@
 #include "framework/experiment/files/prior_files.hpp"
 #include "framework/experiment/files/resolve_defaults.hpp"
 #include "framework/experiment/files/signal_files.hpp"
+#include "framework/experiment/files/tracking_file.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/tree/overrides.hpp"
 #include "framework/experiment/tree/read_value.hpp"
@@ -30,10 +31,17 @@ YamlNode finishTree(YamlNode root, const std::string& path, const std::vector<st
   return root;
 }
 
+YamlNode withoutKey(YamlNode root, const char* key) {
+  root.entries.erase(std::remove_if(root.entries.begin(), root.entries.end(),
+                                    [&](const YamlEntry& entry) { return entry.key == key; }),
+                     root.entries.end());
+  return root;
+}
+
 /// As its tree says, without defaults that depend on other values.
 ExperimentSpec readPlain(const YamlNode& tree) {
   ExperimentSpec experiment;
-  readValue(withoutSweep(tree), experiment);
+  readValue(withoutKey(withoutSweep(tree), kTrackingKey), experiment);
   requireFewSamples(experiment.features, experiment.name.where);
   return experiment;
 }
@@ -142,7 +150,7 @@ std::string writeIndependentDefaults(const YamlNode& root) {
     return writeYaml(root);  // each trial has defaults of its own
   }
   ExperimentSpec experiment;
-  readValue(withoutSweep(root), experiment);
+  readValue(withoutKey(withoutSweep(root), kTrackingKey), experiment);
   YamlNode tree = writeValue(experiment);
   if (const std::optional<SweepSpec> sweep = readSweep(root)) {
     tree.entries.push_back({kSweep, {}, writeValue(*sweep)});
@@ -161,10 +169,7 @@ std::optional<SweepSpec> readSweep(const YamlNode& root) {
 }
 
 YamlNode withoutSweep(YamlNode root) {
-  root.entries.erase(std::remove_if(root.entries.begin(), root.entries.end(),
-                                    [](const YamlEntry& entry) { return entry.key == kSweep; }),
-                     root.entries.end());
-  return root;
+  return withoutKey(std::move(root), kSweep);
 }
 
 }  // namespace twinmap

@@ -6,6 +6,7 @@
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/experiment/fields/one_of.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
+#include "framework/experiment/tracking_spec.hpp"
 #include "framework/experiment/tree/sweep_spec.hpp"
 
 namespace twinmap {
@@ -289,6 +290,8 @@ std::string makeJsonSchema() {
   schema.update(makeStructSchema<ExperimentSpec>());
   schema["properties"]["sweep"] = makeStructSchema<SweepSpec>();
   schema["properties"]["sweep"]["description"] = "repeats the experiment with other values";
+  schema["properties"]["tracking"] = makeStructSchema<TrackingSpec>();
+  schema["properties"]["tracking"]["description"] = "how parameters move over time, for track";
   schema["properties"]["trials"] = {
       {"type", "object"},
       {"additionalProperties", {{"type", "object"}}},

@@ -1,0 +1,107 @@
+#include "framework/serve/twin/track_service.hpp"
+
+#include "framework/base/files/sync_file.hpp"
+#include "framework/base/json/json.hpp"
+#include "framework/base/text/number_text.hpp"
+#include "framework/base/text/source_location.hpp"
+#include "framework/data/measurement/files/time_stamp.hpp"
+
+namespace twinmap::serve {
+namespace {
+
+/// What stands for a file where the client names none.
+constexpr const char* kUnnamed = "measurement";
+
+/// The header, and the rows of the newest measurements; those of one have the same first cell.
+std::string keepNewest(const std::string& csv, std::size_t most) {
+  const std::size_t header = csv.find('\n') + 1;
+  std::size_t begin = csv.size();
+  std::string last;
+  for (std::size_t kept = 0; begin > header;) {
+    const std::size_t end_above = csv.rfind('\n', begin - 2);
+    const std::size_t row = end_above == std::string::npos ? 0 : end_above + 1;
+    const std::string measurement = csv.substr(row, csv.find(',', row) - row);
+    if (row < header || (measurement != last && ++kept > most)) {
+      break;
+    }
+    last = measurement;
+    begin = row;
+  }
+  return csv.substr(0, header) + csv.substr(begin);
+}
+
+}  // namespace
+
+double parseAt(const std::string& text) {
+  double seconds = 0.0;
+  if (!parseTimeStamp(text, seconds) && !parseLiteral(text, seconds)) {
+    throw ExperimentError("at: '" + text + "' must be a date and time, or seconds since 1970" +
+                          "\n  such as 2026-11-26T10:00:00Z");
+  }
+  return seconds;
+}
+
+TrackService::TrackService(const InferenceSource& source, std::filesystem::path state, TrackOptions options)
+    : source_(source),
+      state_(std::move(state)),
+      options_(std::move(options)),
+      session_(std::make_unique<TrackSession>(source_, state_, options_)) {}
+
+TrackSession& TrackService::getSession() const {
+  if (session_ == nullptr) {
+    throw std::runtime_error(lost_);
+  }
+  return *session_;
+}
+
+void TrackService::reopen() {
+  session_.reset();
+  try {
+    session_ = std::make_unique<TrackSession>(source_, state_, options_);
+  } catch (const std::exception& error) {
+    lost_ = error.what();
+  }
+}
+
+Json TrackService::answer(const PostedMeasurement& posted) {
+  if (!posted.trial.empty()) {
+    throw ExperimentError("trial: '" + posted.trial + "': recordings of trials are not tracked" +
+                          "\n  leave it out, or infer them together: twinmap infer --trial");
+  }
+  MeasurementContext context;
+  if (!posted.at.empty()) {
+    context.at = parseAt(posted.at);
+  }
+  try {
+    Json answer = getSession().update(posted.text, posted.name.empty() ? kUnnamed : posted.name, context);
+    changed_ = true;
+    return answer;
+  } catch (const ExperimentError&) {
+    throw;  // nothing has changed
+  } catch (const std::exception&) {
+    reopen();
+    throw;
+  }
+}
+
+void TrackService::commit() {
+  const TrackSession& session = getSession();
+  if (changed_) {
+    syncFile(session.getHistoryFile());  // the state was synced when it was replaced
+    changed_ = false;
+  }
+}
+
+Json TrackService::getState() const {
+  return getSession().getState();
+}
+
+std::string TrackService::makeHistory(std::size_t most) const {
+  return keepNewest(getSession().makeHistory(), most);
+}
+
+std::string TrackService::makePage() const {
+  return getSession().makePage();
+}
+
+}  // namespace twinmap::serve

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "framework/serve/live/measurement_service.hpp"
+#include "framework/tracking/track_session.hpp"
+
+namespace twinmap::serve {
+
+/// The twin of `twinmap track` behind the server.
+class TrackService final : public MeasurementService {
+ public:
+  /// The source must outlive it. Throws as TrackSession.
+  TrackService(const InferenceSource& source, std::filesystem::path state, TrackOptions options);
+
+  Json answer(const PostedMeasurement& posted) override;
+  void commit() override;
+  Json getState() const override;
+  std::string makeHistory(std::size_t most) const override;
+  std::string makePage() const override;
+
+ private:
+  /// Throws std::runtime_error after reopen() has failed.
+  TrackSession& getSession() const;
+  /// The twin as it is on disk. commit() says where that failed.
+  void reopen();
+
+  const InferenceSource& source_;
+  const std::filesystem::path state_;
+  const TrackOptions options_;
+  std::unique_ptr<TrackSession> session_;
+  std::string lost_;      // why there is none
+  bool changed_ = false;  // since commit()
+};
+
+/// A time as it is posted: ISO 8601, or seconds since 1970. Throws ExperimentError.
+double parseAt(const std::string& text);
+
+}  // namespace twinmap::serve

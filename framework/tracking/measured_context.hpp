@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "framework/data/measurement/files/table.hpp"
+#include "framework/experiment/tracking_spec.hpp"
+#include "framework/tracking/track_record.hpp"
+
+namespace twinmap {
+
+/// The time of a measurement, s since 1970: the first value of its column; none where no column is stated.
+/// Throws MeasurementError for a column that is missing, or does not begin with a time.
+std::optional<double> readTrackTime(const Table& table, const TrackingSpec* tracking);
+
+/// The mean of each condition's column, of the cells that are there; NaN where there are none.
+Eigen::VectorXd readConditions(const Table& table, const std::vector<std::string>& conditions);
+
+/// How large and how fast each column moves (logarithms of the root mean square about its mean, and of that
+/// of its differences), and the conditions. Columns of times (increasing) and those that do not move have
+/// none.
+std::vector<Covariate> listCovariates(const Table& table, const std::vector<std::string>& conditions);
+
+}  // namespace twinmap

@@ -1,0 +1,25 @@
+#pragma once
+
+#include "framework/base/json/json_fwd.hpp"
+#include "framework/experiment/tracking_spec.hpp"
+#include "framework/tracking/track_space.hpp"
+#include "framework/tracking/tracked_twin.hpp"
+
+namespace twinmap {
+
+/// What the texts of a tracked twin are made of.
+struct TrackView {
+  const std::vector<ParameterSpec>& parameters;
+  const TrackSpace& space;
+  const TrackingSpec* tracking;  ///< null: none
+};
+
+/// The belief at a point: "measurements", "time", "status" (ok or uncalibrated), "parameters" by name, each
+/// with mean, sd, lower, upper, unit, "walk" (sd over an interval, with its own) and "slope"; "covariance",
+/// "follows", "forecast" of limits.
+Json makeTrackState(const TrackPoint& point, const TrackView& view);
+
+/// The alarms behind the first `skipped` of all: parameter, time, size, sd, probability, rivals.
+Json makeTrackAlarms(const TrackPoint& point, long long skipped, const TrackView& view);
+
+}  // namespace twinmap

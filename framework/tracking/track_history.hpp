@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/experiment/model/model_spec.hpp"
+#include "framework/tracking/track_record.hpp"
+#include "framework/tracking/track_space.hpp"
+
+namespace twinmap {
+
+/// The records of all measurements, a line each, in the order they came: it grows, the state does not.
+class TrackHistory {
+ public:
+  /// bytes: what of the file belongs to the state; anything behind was never answered and is cut off. Throws
+  /// std::runtime_error naming the file where it has less.
+  TrackHistory(std::filesystem::path file, std::uint64_t bytes);
+
+  /// Appends a line.
+  void add(const TrackRecord& record);
+
+  std::uint64_t getBytes() const { return bytes_; }
+  const std::filesystem::path& getFile() const { return file_; }
+
+  /// All, in the order of their times.
+  std::vector<TrackRecord> read(Eigen::Index parameters, Eigen::Index conditions) const;
+
+ private:
+  std::filesystem::path file_;
+  std::uint64_t bytes_;
+};
+
+/// What is known of each parameter at each measurement, in coordinates: by those until then, and by all.
+struct TrackCourse {
+  std::vector<TrackRecord> records;            ///< N
+  std::vector<bool> used;                      ///< N
+  Eigen::MatrixXd filtered, filtered_stddevs;  ///< p x N
+  Eigen::MatrixXd smoothed, smoothed_stddevs;  ///< p x N
+};
+
+/// Runs through all records (in order); smoothed values integrate over unknown rates as filtered ones do.
+TrackCourse calcTrackCourse(std::vector<TrackRecord> records, const tracking::Model& model);
+
+/// CSV: time, source, status, used, parameter, unit, mean, sd, lower, upper, smoothed_mean, smoothed_sd,
+/// smoothed_lower, smoothed_upper.
+std::string makeTrackCsv(const TrackCourse& course, const std::vector<ParameterSpec>& parameters,
+                         const TrackSpace& space);
+
+}  // namespace twinmap

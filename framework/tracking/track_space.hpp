@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "framework/experiment/model/model_spec.hpp"
+
+namespace twinmap {
+
+/// The coordinates that parameters are tracked in: half-widths of the bounds from their middle, so that
+/// normal distributions stay normal; logarithms, likewise scaled, where the prior is of the logarithm.
+class TrackSpace {
+ public:
+  explicit TrackSpace(const std::vector<ParameterSpec>& parameters);
+
+  Eigen::Index count() const { return center_.size(); }
+  double toCoordinate(Eigen::Index parameter, double value) const;
+  double toValue(Eigen::Index parameter, double coordinate) const;
+  /// d coordinate / d value, at a value.
+  double calcSlope(Eigen::Index parameter, double value) const;
+
+ private:
+  std::vector<bool> is_log_;
+  Eigen::VectorXd center_, half_width_;
+};
+
+/// A normal distribution of the parameters in these coordinates.
+struct NormalBelief {
+  Eigen::VectorXd mean;        ///< p
+  Eigen::MatrixXd covariance;  ///< p x p
+};
+
+/// What is known before any measurement.
+NormalBelief makeTrackPrior(const ModelSpec& model, const TrackSpace& space);
+
+}  // namespace twinmap

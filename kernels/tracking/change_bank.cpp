@@ -1,0 +1,184 @@
+#include "kernels/tracking/change_bank.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace twinmap::tracking {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+double calcTotalWeight(const Model& model) {
+  double total = 0.0;
+  for (const Drift& drift : model.drifts) {
+    total += drift.change_weight;
+  }
+  return total;
+}
+
+/// Of each supposed change, its share of the statistic, over that of the largest.
+VectorXd calcShares(const Model& model, const ChangeBank& bank, double largest) {
+  VectorXd shares(static_cast<Index>(bank.changes.size()));
+  for (std::size_t c = 0; c < bank.changes.size(); ++c) {
+    const Supposed& change = bank.changes[c];
+    shares[static_cast<Index>(c)] = model.drifts[static_cast<std::size_t>(change.parameter)].change_weight *
+                                    std::exp(change.log_ratio - largest);
+  }
+  return shares;
+}
+
+double findLargest(const ChangeBank& bank) {
+  double largest = 0.0;
+  for (const Supposed& change : bank.changes) {
+    largest = std::max(largest, change.log_ratio);
+  }
+  return largest;
+}
+
+void moveSignature(const Model& model, double dt, VectorXd& signature) {
+  Index slope = model.countParameters();
+  for (Index j = 0; j < model.countParameters(); ++j) {
+    if (model.drifts[static_cast<std::size_t>(j)].has_slope) {
+      signature[j] += dt * signature[slope++];
+    }
+  }
+}
+
+}  // namespace
+
+void supposeChanges(const Model& model, double dt, double time, const VectorXd& stddev,
+                    const Eigen::MatrixXd& log_weights, ChangeBank& bank) {
+  const auto p = static_cast<std::size_t>(model.countParameters());
+  for (Supposed& change : bank.changes) {
+    moveSignature(model, dt, change.signature);
+  }
+  if (bank.changes.size() == kChangeWindow * p) {
+    bank.changes.erase(bank.changes.begin(), bank.changes.begin() + static_cast<std::ptrdiff_t>(p));
+    bank.log_weights.erase(bank.log_weights.begin());
+  }
+  bank.log_weights.push_back(log_weights);
+  for (std::size_t j = 0; j < p; ++j) {
+    const auto parameter = static_cast<Index>(j);
+    bank.changes.push_back({parameter, time, VectorXd::Unit(model.countStates(), parameter), 0.0,
+                            stddev[parameter] * stddev[parameter], 0.0});
+  }
+}
+
+namespace {
+
+/// A change of a measurement ago may be of any size: its prior is as wide as that one says at least.
+void widen(const ChangeEvidence& evidence, Supposed& change) {
+  VectorXd signature = change.signature;
+  double descent = 0.0, information = 0.0;
+  for (std::size_t i = 0; i < evidence.innovations.size(); ++i) {
+    const Innovation& innovation = evidence.innovations[i];
+    const double seen = evidence.rows.rows.col(static_cast<Index>(i)).dot(signature);
+    descent += seen * innovation.value / innovation.variance;
+    information += seen * seen / innovation.variance;
+    signature -= seen * innovation.gain;
+  }
+  if (information > 0.0) {
+    const double size = descent / information;
+    change.variance = std::max(change.variance, size * size);
+  }
+}
+
+/// One supposed change, a measurement later.
+void weigh(const ChangeEvidence& evidence, double without, Supposed& change) {
+  double size = change.size, variance = change.variance, log_good = 0.0;
+  VectorXd signature = change.signature;
+  for (std::size_t i = 0; i < evidence.innovations.size(); ++i) {
+    const Innovation& innovation = evidence.innovations[i];
+    const double seen = evidence.rows.rows.col(static_cast<Index>(i)).dot(signature);
+    const double with = innovation.variance + seen * seen * variance;
+    const double off = innovation.value - seen * size;
+    log_good += 0.5 * (innovation.value * innovation.value / innovation.variance - off * off / with -
+                       std::log(with / innovation.variance));
+    size += variance * seen * off / with;
+    variance -= variance * seen * variance * seen / with;
+    signature -= seen * innovation.gain;
+  }
+  const double larger = std::max(log_good, evidence.log_bad);
+  change.log_ratio += larger + std::log1p(std::exp(std::min(log_good, evidence.log_bad) - larger)) - without;
+  if (log_good > evidence.log_bad) {
+    change.size = size;
+    change.variance = variance;
+  }
+  if (evidence.is_used) {
+    change.signature = signature;
+  }
+}
+
+}  // namespace
+
+void weighChanges(const ChangeEvidence& evidence, ChangeBank& bank) {
+  const double without = std::max(0.0, evidence.log_bad) + std::log1p(std::exp(-std::abs(evidence.log_bad)));
+  for (Supposed& change : bank.changes) {
+    if (change.time == bank.changes.back().time && change.log_ratio == 0.0) {
+      widen(evidence, change);
+    }
+    weigh(evidence, without, change);
+  }
+}
+
+double calcShiryaevRoberts(const Model& model, const ChangeBank& bank) {
+  const double largest = findLargest(bank);
+  return std::exp(largest) * calcShares(model, bank, largest).sum() / calcTotalWeight(model);
+}
+
+// Fitted to simulated lives of 1, 2, 4 and 8 parameters without a change (docs/benchmarks/tracking.md), which
+// differ by less than chance: one false alarm in 1000 at 275 for constants, at 160, 115 and 90 for walks of
+// .1, .3 and 1; at 125 where the rate is learnt, whatever it is.
+double calcThreshold(const Model& model, const VectorXd& ratios) {
+  constexpr double kOften = 1e-3, kExponent = 0.85;
+  constexpr double kOfWalks = 80.0, kMoreOfConstants = 195.0, kSlow = 0.07, kOfUnknown = 125.0;
+  double mean = 0.0;
+  for (std::size_t j = 0; j < model.drifts.size(); ++j) {
+    const double of_known = kOfWalks + kMoreOfConstants / (1.0 + ratios[static_cast<Index>(j)] / kSlow);
+    mean += model.drifts[j].change_weight * (std::isnan(model.drifts[j].rate) ? kOfUnknown : of_known);
+  }
+  return mean / calcTotalWeight(model) * std::pow(kOften / model.false_alarms, kExponent);
+}
+
+Change describeChange(const Model& model, const ChangeBank& bank) {
+  VectorXd shares = calcShares(model, bank, findLargest(bank));
+  shares /= shares.sum();
+  Change described;
+  described.probabilities = VectorXd::Zero(model.countParameters());
+  for (std::size_t c = 0; c < bank.changes.size(); ++c) {
+    described.probabilities[bank.changes[c].parameter] += shares[static_cast<Index>(c)];
+  }
+  described.probability = described.probabilities.maxCoeff(&described.parameter);
+  double best = -1.0, sum = 0.0;
+  described.earliest = described.latest = bank.changes.back().time;
+  bool has_begun = false;
+  for (std::size_t c = 0; c < bank.changes.size(); ++c) {
+    const Supposed& change = bank.changes[c];
+    const double share = shares[static_cast<Index>(c)];
+    if (change.parameter != described.parameter) {
+      continue;
+    }
+    if (share > best) {
+      best = share;
+      described.place = c;
+    }
+    sum += share / described.probability;
+    if (!has_begun && sum >= 0.025) {
+      described.earliest = change.time;
+      has_begun = true;
+    }
+    if (sum <= 0.975) {
+      described.latest = change.time;
+    }
+  }
+  const Supposed& change = bank.changes[described.place];
+  described.time = change.time;
+  described.latest = std::max(described.latest, change.time);
+  described.size = change.size;
+  described.stddev = std::sqrt(change.variance);
+  return described;
+}
+
+}  // namespace twinmap::tracking
