@@ -14,7 +14,12 @@ namespace nb = nanobind;
 /// A matrix whose rows follow one another in memory, as the columns of Eigen's do: (n, d) here is d x n
 /// there.
 using Rows = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
-using Array = nb::ndarray<nb::numpy, double>;
+using Array = nb::object;  // of numpy
+
+/// The array that looks at memory which its owner holds.
+inline Array makeArray(double* data, std::initializer_list<std::size_t> shape, const nb::capsule& owner) {
+  return nb::cast(nb::ndarray<nb::numpy, double>(data, shape, owner));
+}
 
 /// The rows as columns, where they are: no copy. The array must outlive the view. Throws
 /// std::invalid_argument, naming `what`, unless it has two dimensions with `width` columns.
@@ -33,7 +38,7 @@ inline Array moveToRows(Eigen::MatrixXd&& columns) {
   double* data = owned->data();
   const nb::capsule owner(owned.release(),
                           [](void* matrix) noexcept { delete static_cast<Eigen::MatrixXd*>(matrix); });
-  return Array(data, shape, owner);
+  return makeArray(data, shape, owner);
 }
 
 inline Array copyVector(const Eigen::Ref<const Eigen::VectorXd>& values) {
@@ -42,7 +47,7 @@ inline Array copyVector(const Eigen::Ref<const Eigen::VectorXd>& values) {
   double* data = owned->data();
   const nb::capsule owner(owned.release(),
                           [](void* vector) noexcept { delete static_cast<Eigen::VectorXd*>(vector); });
-  return Array(data, shape, owner);
+  return makeArray(data, shape, owner);
 }
 
 }  // namespace twinmap::python

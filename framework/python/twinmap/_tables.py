@@ -127,5 +127,5 @@ def read_csv(path: Union[str, "os.PathLike[str]"], index: Optional[str] = None) 
     with open(path, encoding="utf-8", newline="") as file:
         header, *rows = list(csv.reader(file))
     columns = {name: _read_column([row[i] for row in rows]) for i, name in enumerate(header)}
-    names = columns.pop(index) if index else None
+    names = list(columns.pop(index)) if index else None
     return make_frame(columns, names, index)
