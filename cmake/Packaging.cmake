@@ -25,6 +25,8 @@ if(NOT TWINMAP_SANITIZE)
   install(DIRECTORY "${TWINMAP_SHARE}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" FILES_MATCHING PATTERN "*.1")
   install(FILES "${TWINMAP_SHARE}/experiment.schema.json" DESTINATION "${CMAKE_INSTALL_DATADIR}/twinmap")
 endif()
+# A live twin as a service, not started by itself (docs/how-to/serve-a-twin.md).
+install(FILES "cmake/systemd/twinmap-serve@.service" DESTINATION lib/systemd/system)
 # The documents as a site with search, where MkDocs is.
 find_program(MKDOCS mkdocs)
 if(MKDOCS AND NOT TWINMAP_SANITIZE)

@@ -144,6 +144,20 @@ struct TrackArguments {
   int threads = 0;                 ///< 0: all
 };
 
+struct ServeArguments {
+  std::string run;               ///< folder of a run, its maps.h5, or an experiment file
+  std::string state;             ///< file of the belief
+  std::string tracking;          ///< file with a section `tracking:`; "": the experiment's own
+  std::vector<std::string> use;  ///< statuses of measurements that update although they do not by themselves
+  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
+  std::optional<bool> refine;      ///< none: as the experiment says
+  int lag = 100;                   ///< measurements back that a late one may belong to
+  std::string listen = "127.0.0.1:8765";
+  std::string token_file;             ///< "": no token
+  std::string mqtt_host, mqtt_topic;  ///< "": no MQTT
+  int threads = 0;                    ///< 0: all
+};
+
 struct DiagnoseArguments {
   std::string run;                    ///< as of infer
   std::vector<std::string> files;     ///< measurements of one machine; empty: what a test is blind to
@@ -327,6 +341,9 @@ void infer(const InferArguments& arguments);
 /// Of several recordings together: where trials, windows or joint are given.
 void inferJointly(const InferArguments& arguments);
 void inferInSegments(const InferArguments& arguments);
+
+/// Answers measurements over HTTP, and MQTT, until a signal comes.
+void serve(const ServeArguments& arguments);
 
 /// Says which terms a model lacks that is to explain measurements, and writes the corrected experiment; or,
 /// without measurements, what they would not notice.

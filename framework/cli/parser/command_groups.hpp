@@ -19,6 +19,9 @@ void addExperimentCommands(CLI::App& app, const Invocation& invocation);
 /// infer, track, replay, export, noise, look.
 void addMapCommands(CLI::App& app, const Invocation& invocation);
 
+/// serve.
+void addLiveCommands(CLI::App& app);
+
 /// import, view.
 void addRobotCommands(CLI::App& app);
 

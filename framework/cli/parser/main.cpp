@@ -52,6 +52,7 @@ void groupCommands(CLI::App& app) {
   const std::pair<const char*, std::vector<const char*>> groups[] = {
       {"From a model to an estimate",
        {"import", "view", "check", "simulate", "run", "infer", "diagnose", "validate", "select", "replay"}},
+      {"Keep a twin true", {"track", "serve"}},
       {"Improve the experiment", {"look", "noise", "design"}},
       {"Look after runs", {"plan", "status", "report", "compare", "verify", "store"}},
       {"Take the estimator elsewhere", {"export"}},
@@ -95,6 +96,7 @@ int runCommand(int count, char** arguments) {
   const cli::Invocation invocation{joinArguments(count, arguments), twinmap::countThreads()};
   cli::addExperimentCommands(app, invocation);
   cli::addMapCommands(app, invocation);
+  cli::addLiveCommands(app);
   cli::addRobotCommands(app);
   cli::addDiagnosisCommands(app);
   cli::addResultCommands(app, invocation);
