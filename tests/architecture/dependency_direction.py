@@ -140,6 +140,7 @@ LIBRARIES = {
         "results",
         "report",
         "study",
+        "tracking",
         "optimal_design",
         "c_api",
         "python",
