@@ -107,7 +107,7 @@ void describe(Fields& f, LimitSpec& s) {
 }
 
 /// How parameters move over time, for `twinmap track`. It stands beside an experiment, whose digest is
-/// without it. Where it is not given, each parameter walks at an unknown rate; parameters that `drift` does
+/// without it. Each parameter walks at an unknown rate without it; parameters that `drift` does
 /// not name are constant.
 struct TrackingSpec {
   TrackTimeSpec time;

@@ -15,9 +15,8 @@ std::optional<double> readTrackTime(const Table& table, const TrackingSpec* trac
 /// The mean of each condition's column, of the cells that are there; NaN where there are none.
 Eigen::VectorXd readConditions(const Table& table, const std::vector<std::string>& conditions);
 
-/// How large and how fast each column moves (logarithms of the root mean square about its mean, and of that
-/// of its differences), and the conditions. Columns of times (increasing) and those that do not move have
-/// none.
+/// How large and how fast each column moves, and the conditions. Both are logarithms of root mean squares, of
+/// the column and of its differences. Columns of times (increasing) and those that do not move have none.
 std::vector<Covariate> listCovariates(const Table& table, const std::vector<std::string>& conditions);
 
 }  // namespace twinmap

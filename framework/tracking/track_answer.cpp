@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "framework/base/json/json.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "kernels/tracking/crossing.hpp"
 
 namespace twinmap {
@@ -14,8 +15,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-constexpr double kNormal95 = 1.959963984540054;
 
 /// Of the state: the place of a parameter's slope; none: -1.
 Index findSlope(const tracking::Model& model, Index parameter) {

@@ -14,9 +14,9 @@ struct TrackView {
   const TrackingSpec* tracking;  ///< null: none
 };
 
-/// The belief at a point: "measurements", "time", "status" (ok or uncalibrated), "parameters" by name, each
-/// with mean, sd, lower, upper, unit, "walk" (sd over an interval, with its own) and "slope"; "covariance",
-/// "follows", "forecast" of limits.
+/// The belief at a point: "measurements", "time", "status" (ok or uncalibrated), "parameters" by name. Each
+/// has mean, sd, lower, upper, unit, "walk" (sd over an interval, with its own) and "slope". Then
+/// "covariance", "follows", "forecast" of limits.
 Json makeTrackState(const TrackPoint& point, const TrackView& view);
 
 /// The alarms behind the first `skipped` of all: parameter, time, size, sd, probability, rivals.

@@ -15,8 +15,8 @@ struct TrackIdentity {
   std::string tracking;  ///< as YAML, "" where there is none
 };
 
-/// Writes base and window of a twin, sealed with a digest, whole or not at all. history_bytes: of the history
-/// beside it, all that belongs to the state.
+/// Writes base and window of a twin, sealed with a digest, whole or not at all. history_bytes: what of the
+/// history belongs to it.
 void writeTrackFile(const std::filesystem::path& path, const TrackIdentity& identity, const TrackedTwin& twin,
                     std::uint64_t history_bytes);
 

@@ -11,6 +11,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/text/csv.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "kernels/tracking/smoother.hpp"
 #include "kernels/tracking/tracker.hpp"
 
@@ -189,7 +190,6 @@ namespace {
 
 /// "mean,sd,lower,upper" in the parameter's unit; the interval is of 95 %.
 void addBand(const TrackSpace& space, Index j, double mean, double stddev, CsvRow& row) {
-  constexpr double kNormal95 = 1.959963984540054;
   const double value = space.toValue(j, mean);
   for (const double number :
        {value, stddev / space.calcSlope(j, value), space.toValue(j, mean - kNormal95 * stddev),

@@ -9,11 +9,10 @@
 
 namespace twinmap {
 
-/// The likelihood of an estimate of p parameters, as rows of a linear measurement: the prior that the
-/// estimate contains is taken out of it (information and its weighted mean are subtracted), so that it counts
-/// once however many measurements there are. Directions of which the measurement says hardly more than the
-/// prior have no row. Of several separate modes the one that `believed` makes likeliest is taken. Time and
-/// conditions are the caller's.
+/// The likelihood of an estimate of p parameters, as rows of a linear measurement. The prior that the
+/// estimate contains is taken out (information and its weighted mean are subtracted). So it counts once.
+/// Directions of which the measurement says hardly more than the prior have no row. Of several separate modes
+/// the one that `believed` makes likeliest is taken. Time and conditions are the caller's.
 tracking::Measurement makeTrackMeasurement(const Estimate& estimate, const TrackSpace& space,
                                            const NormalBelief& prior, const NormalBelief& believed);
 

@@ -8,6 +8,7 @@
 #include "framework/base/json/json.hpp"
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/estimation/interval_factor.hpp"
 
 namespace twinmap {
 namespace {
@@ -46,7 +47,6 @@ struct Drawn {
 };
 
 Drawn collect(const TrackCourse& course, const TrackSpace& space, Index j) {
-  constexpr double kNormal95 = 1.959963984540054;
   Drawn drawn;
   const auto count = static_cast<Index>(course.records.size());
   const Index step = (count + kMostDrawn - 1) / kMostDrawn;

@@ -70,7 +70,7 @@ TrackRecord readRecord(const std::string& line, Index parameters, Index conditio
     for (const Json& covariate : json.at("covariates")) {
       record.covariates.push_back({covariate.at(0), covariate.at(1)});
     }
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr double kSaysNothing = std::numeric_limits<double>::infinity();
     constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
     tracking::Measurement& measurement = record.measurement;
     record.estimate = readNumbers(json.at("estimate"), kMissing);
@@ -79,7 +79,7 @@ TrackRecord readRecord(const std::string& line, Index parameters, Index conditio
     const VectorXd rows = readNumbers(json.at("rows"), kMissing);
     require(rows.size() == measurement.values.size() * parameters);
     measurement.rows = Eigen::Map<const Eigen::MatrixXd>(rows.data(), measurement.values.size(), parameters);
-    measurement.variances = readNumbers(json.at("variances"), kInfinity);
+    measurement.variances = readNumbers(json.at("variances"), kSaysNothing);
     measurement.conditions = readNumbers(json.at("conditions"), kMissing);
     require(measurement.variances.size() == parameters && measurement.conditions.size() == conditions);
     return record;

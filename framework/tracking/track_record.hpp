@@ -7,8 +7,8 @@
 
 namespace twinmap {
 
-/// A quantity of a measurement that a parameter may follow where the model is wrong: how large and how fast
-/// its motion was, and the conditions.
+/// A quantity of a measurement that a parameter may follow where the model is wrong. Such are how large and
+/// how fast its motion was, and the conditions.
 struct Covariate {
   std::string name;
   double value = 0.0;

@@ -43,9 +43,9 @@ class TrackSession {
   ~TrackSession();
 
   /// Infers the measurement, updates the belief and writes the state; the answer is that of `infer --json`
-  /// with `track` beside. When it returns, state and history are written. text: a CSV table as a file has it;
-  /// name: what stands for the file in answers and errors. Throws MeasurementError where it cannot be used:
-  /// nothing is written then.
+  /// with `track` beside. State and history are written then. text: a CSV table as a file has it. name: what
+  /// stands for the file in answers and errors. Throws MeasurementError where it cannot be used: nothing is
+  /// written then.
   Json update(const std::string& text, const std::string& name, const MeasurementContext& context);
   Json updateFile(const std::filesystem::path& file, const MeasurementContext& context);
 

@@ -6,8 +6,9 @@
 
 namespace twinmap {
 
-/// The coordinates that parameters are tracked in: half-widths of the bounds from their middle, so that
-/// normal distributions stay normal; logarithms, likewise scaled, where the prior is of the logarithm.
+/// The coordinates that parameters are tracked in. They are half-widths of the bounds from their middle, so
+/// that normal distributions stay normal. They are logarithms, likewise scaled, where the prior is of the
+/// logarithm.
 class TrackSpace {
  public:
   explicit TrackSpace(const std::vector<ParameterSpec>& parameters);

@@ -37,12 +37,12 @@ constexpr std::size_t kCourseSamples = 80, kKeptAlarms = 20;
 /// One measurement later.
 tracking::Step advance(const TrackRecord& record, TrackPoint& point);
 
-/// Which covariates explain a parameter's course as well as a step at a time does: weighted least squares of
-/// a level and a slope over each, as good within log(20) of likelihood.
+/// Which covariates explain a parameter's course as well as a step at a time does. They are weighted least
+/// squares of a level and a slope over each, as good within log(20) of likelihood.
 std::vector<std::string> findRivals(const std::deque<CourseSample>& course, const tracking::Change& change);
 
-/// Measurements in the order of their times, whatever order they come in: as many as `lag` back can be
-/// inserted, from where the twin is computed again, so that the result has the same bits.
+/// Measurements in the order of their times, whatever order they come in. As many as `lag` back can be
+/// inserted. The twin is computed again from there, so that the result has the same bits.
 class TrackedTwin {
  public:
   TrackedTwin(tracking::Model model, int lag);

@@ -34,7 +34,7 @@ void predict(const Model& model, double dt, const VectorXd& growth, Belief& beli
 namespace {
 
 /// Adds noise of variance v along a column (k) to rows of unit variance and makes them of unit variance
-/// again: (1 + v c c')^(-1/2) = 1 - (1 - 1/sqrt(1 + v c'c)) c c' / c'c.
+/// again. (1 + v c c')^(-1/2) = 1 - (1 - 1/sqrt(1 + v c'c)) c c' / c'c.
 void addNoise(VectorXd column, double variance, StateRows& rows) {
   const double length = column.squaredNorm();
   if (!(length > 0.0)) {

@@ -22,8 +22,8 @@ struct Innovation {
   Eigen::VectorXd gain;  ///< n
 };
 
-/// The rows of a measurement over the state (n x k), conditions included; a missing condition has none, and
-/// what it may do is added to the noise of the rows, which stay of unit variance. `spread`: variance of each
+/// The rows of a measurement over the state (n x k), conditions included. A missing condition has none. What
+/// it may do is added to the noise of the rows, which stay of unit variance. `spread`: variance of each
 /// condition so far.
 struct StateRows {
   Eigen::MatrixXd rows;    ///< n x k
@@ -32,9 +32,9 @@ struct StateRows {
 StateRows makeStateRows(const Model& model, const Measurement& measurement, const Eigen::VectorXd& reference,
                         const Eigen::VectorXd& spread, const Belief& belief);
 
-/// Kalman's update by one value after another, as exact as by all at once: mean += P h v / s, P -= P h h' P /
-/// s, s = h' P h + 1. Returns log N(values; prediction). `innovations`, if given: k, of each. O(k n^2), no
-/// allocation where these have their sizes.
+/// Kalman's update by one value after another, as exact as by all at once. With s = h' P h + 1 it is mean +=
+/// P h v / s, P -= P h h' P / s. Returns log N(values; prediction). `innovations`, if given: k, of each. O(k
+/// n^2), no allocation where these have their sizes.
 double update(const StateRows& rows, Belief& belief, std::vector<Innovation>* innovations = nullptr);
 
 }  // namespace twinmap::tracking

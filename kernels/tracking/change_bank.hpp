@@ -30,14 +30,15 @@ struct ChangeEvidence {
   const std::vector<Innovation>& innovations;  ///< as if it were good
   double log_bad = 0.0;  ///< log ratio of its densities where it is bad and where it is good, priors included
   bool is_used = true;   ///< whether the belief took it
+  Eigen::Index parameters = 0;
 };
 
-/// How many measurements back changes are supposed: a change of one standard deviation of a measurement is
+/// How many measurements back changes are supposed. A change of one standard deviation of a measurement is
 /// found within half of it, and the walk takes what is slower.
 constexpr std::size_t kChangeWindow = 40;
 
-/// Moves all that is supposed over a step of time, then supposes a change of each parameter here, of normal
-/// size with the given standard deviations (p).
+/// Moves all that is supposed over a step of time. Then a change of each parameter is supposed here, of
+/// normal size with the given standard deviations (p).
 void supposeChanges(const Model& model, double dt, double time, const Eigen::VectorXd& stddev,
                     const Eigen::MatrixXd& log_weights, ChangeBank& bank);
 
@@ -49,8 +50,8 @@ void weighChanges(const ChangeEvidence& evidence, ChangeBank& bank);
 /// sum to 1). Without a change its mean grows by 1 a measurement.
 double calcShiryaevRoberts(const Model& model, const ChangeBank& bank);
 
-/// Above which it is an alarm, to be false as often as the model says. ratios (p): of each walk's standard
-/// deviation between two measurements over that of a measurement, on which it depends as a walk forgets.
+/// Above which it is an alarm, to be false as often as the model says. It depends on how fast walks forget.
+/// ratios (p): each walk's standard deviation between two measurements over that of a measurement.
 double calcThreshold(const Model& model, const Eigen::VectorXd& ratios);
 
 /// A change that was announced.

@@ -11,17 +11,17 @@ struct Outlook {
   double rate = 0.0, rate_log_stddev = 0.0;  ///< variance per unit of time, and of its logarithm
 };
 
-/// When a level first passes a limit, from now on: quantiles; infinite where it does not with that
-/// probability.
+/// Quantiles of the time until a level first passes a limit; infinite of what has less probability.
 struct Crossing {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   double median = kNever, lower = kNever, upper = kNever;  ///< 95 %
 };
 
-/// The probability that the level has passed the limit within a time: that of Brownian motion with drift
-/// (inverse Gaussian first passage), Phi((m t - b) / sqrt(q t)) + exp(2 m b / q) Phi(-(b + m t) / sqrt(q t))
-/// at a distance b: the first term integrated over level and slope in closed form, all else by Gauss-Hermite
-/// quadrature.
+/// The probability that the level has passed the limit within a time. It is that of Brownian motion with
+/// drift (inverse Gaussian first passage). At a distance b it is
+/// Phi((m t - b) / sqrt(q t)) plus exp(2 m b / q)
+/// Phi(-(b + m t) / sqrt(q t)). The first term is integrated over level and slope in closed form, all else by
+/// Gauss-Hermite quadrature.
 double calcPassed(const Outlook& outlook, double limit, bool is_below, double time);
 
 /// is_below: the limit is one that the level must stay above. `longest`: a time beyond which is never.

@@ -8,8 +8,8 @@ namespace twinmap::tracking {
 
 /// How one parameter moves. Its level x is a random walk, x(t + dt) = x(t) + slope dt + N(0, rate dt).
 struct Drift {
-  /// Variance of the walk per unit of time; 0: constant; NaN: unknown, from a rate of a measurement's
-  /// standard deviation over 1024 to 8 of them between two measurements.
+  /// Variance of the walk per unit of time; 0: constant; NaN: unknown. Then it is from a rate of a
+  /// measurement's standard deviation over 1024 to 8 of them between two measurements.
   double rate = 0.0;
   bool has_slope = false;  ///< constant, unknown: one unit of the parameter within the first interval at most
   double change_stddev = 0.0;  ///< of a sudden change; 0: three of a measurement

@@ -5,7 +5,7 @@
 namespace twinmap::tracking {
 
 /// Rates that a walk may have, as standard deviations of it between two measurements over that of a
-/// measurement: from what 10^5 measurements would not show, in octaves, to what hides all memory.
+/// measurement. They go from what 10^5 measurements would not show, in octaves, to what hides all memory.
 constexpr int kRates = 14;
 double getRateRatio(int g);
 
@@ -20,8 +20,9 @@ struct RateFilters {
 /// are seen; uniform in the logarithm below.
 Eigen::VectorXd makeLogRatePrior();
 
-/// What is known of a rate: weights, of sum 1, of ratios between those of the filters. log_weights are
-/// interpolated by a parabola through each three, so that an octave is no limit.
+/// Weights, of sum 1, of ratios between those of the filters.
+/// log_weights are interpolated by a parabola
+/// through each three.
 struct RatePosterior {
   Eigen::VectorXd octaves;  ///< from the lowest ratio on
   Eigen::VectorXd weights;

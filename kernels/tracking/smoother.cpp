@@ -39,7 +39,8 @@ void moveBack(const Model& model, double dt, VectorXd& descent, MatrixXd& inform
   }
 }
 
-/// The adjoint of one value: with A = 1 - gain h', r = h v / s + A' r, N = h h' / s + A' N A.
+/// The adjoint of one value. With A = 1 - gain h' it is
+/// r = h v / s + A' r. Likewise N = h h' / s + A' N A.
 void addValue(const VectorXd& h, const Innovation& innovation, VectorXd& descent, MatrixXd& information) {
   descent += (innovation.value / innovation.variance - innovation.gain.dot(descent)) * h;
   const VectorXd along = information * innovation.gain;

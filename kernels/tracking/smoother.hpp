@@ -18,8 +18,8 @@ struct SmoothedStep {
 };
 
 /// The smoother of Rauch, Tung and Striebel, by the adjoint recursion (Bryson and Frazier) that inverts
-/// nothing: what all measurements say of each time. rates (p): variance per unit of time. Returns log of the
-/// density of all values, which tells rates from each other, beside the course. O(N k n^2).
+/// nothing. It says what all measurements say of each time. rates (p): variance per unit of time. Returns log
+/// of the density of all values, which tells rates from each other, beside the course. O(N k n^2).
 struct Smoothed {
   Course course;
   double log_likelihood = 0.0;

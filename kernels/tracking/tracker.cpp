@@ -20,7 +20,7 @@ constexpr double kNever = 1e300;
 // is taken for too small is called a change. Of the belief itself rates are integrated out.
 constexpr double kAbove = 0.6;
 
-/// log of the ratio of the densities of the length r of k standardized values: half-Cauchy of scale 10, as
+/// log of the ratio of the densities of the length r of k standardized values. Half-Cauchy of scale 10, as
 /// bad measurements are anywhere, over chi of k degrees; with the odds of being bad.
 double calcLogBad(double chi_square, double degrees) {
   constexpr double kScale = 10.0, kLogTwo = 0.69314718055994531, kPi = 3.14159265358979324;
@@ -205,7 +205,7 @@ Step Tracker::advance(const Measurement& measurement) {
   if (step.is_used) {
     take(rows, updated);
   }
-  weighChanges({rows, innovations, log_bad, step.is_used}, state_.changes);
+  weighChanges({rows, innovations, log_bad, step.is_used, model_.countParameters()}, state_.changes);
   step.statistic = calcShiryaevRoberts(model_, state_.changes) / calcThreshold(model_, calcRatios());
   if (!innovations.empty()) {
     state_.run_of_bad = step.is_used ? 0 : state_.run_of_bad + 1;
@@ -222,7 +222,7 @@ Step Tracker::advance(const Measurement& measurement) {
   return step;
 }
 
-/// Where even changes do not explain what is measured: known rates are larger, unknown ones learnt anew.
+/// Known rates become larger, unknown ones are learnt anew, where even changes do not explain measurements.
 bool Tracker::widenRates() {
   constexpr double kWider = 4.0;
   if (state_.surprises <= kSurprises) {

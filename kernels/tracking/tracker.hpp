@@ -35,8 +35,8 @@ struct Step {
   bool is_uncalibrated = false;  ///< half of the last 20 were not used
 };
 
-/// Exact filters of a linear model with normal noise: means and covariances are Kalman's where rates are
-/// known; unknown rates are integrated out over a bank of filters. A measurement that nothing explains (bad,
+/// Exact filters of a linear model with normal noise. Means and covariances are Kalman's where rates are
+/// known. Unknown rates are integrated out over a bank of filters. A measurement that nothing explains (bad,
 /// one in twenty) does not move the belief. Sums of likelihood ratios (Shiryaev, Roberts) raise alarms;
 /// after one the parameter is what the change makes it, and the walk goes on from there.
 class Tracker {

@@ -155,6 +155,7 @@ LIBRARIES = {
         "results",
         "report",
         "study",
+        "tracking",
         "optimal_design",
         "c_api",
         "serve",

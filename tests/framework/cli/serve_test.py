@@ -135,7 +135,9 @@ class ServeTest(unittest.TestCase):
         while subprocess.run(["mosquitto_pub", *client, "-t", "x", "-m", "x"], capture_output=True).returncode != 0:
             time.sleep(0.1)
         listener = subprocess.Popen(
-            ["mosquitto_sub", *client, "-t", "plant/cart/answer", "-C", "2", "-d"], stdout=subprocess.PIPE, text=True
+            ["stdbuf", "-oL", "mosquitto_sub", *client, "-t", "plant/cart/answer", "-C", "2", "-d"],
+            stdout=subprocess.PIPE,
+            text=True,
         )
         while "SUBACK" not in listener.stdout.readline():
             pass

@@ -127,7 +127,7 @@ TEST(Smoother, IsTheJointNormalDistributionsEveryState) {
 
 TEST(Filter, OfAConstantIsTheMean) {
   Model model = testing::makeModel(1, 0.0);
-  model.covariance(0, 0) = 1e12;
+  model.covariance(0, 0) = 1e6;
   Tracker tracker(model);
   for (const double value : {1.0, 2.0, 6.0}) {
     tracker.advance({value,
@@ -136,8 +136,8 @@ TEST(Filter, OfAConstantIsTheMean) {
                      VectorXd::Constant(1, 16.0),
                      {}});
   }
-  EXPECT_NEAR(tracker.calcBelief().mean[0], 3.0, 1e-9);
-  EXPECT_NEAR(tracker.calcBelief().covariance(0, 0), 16.0 / 3.0, 1e-9);
+  EXPECT_NEAR(tracker.calcBelief().mean[0], 3.0, 1e-4);  // of the prior
+  EXPECT_NEAR(tracker.calcBelief().covariance(0, 0), 16.0 / 3.0, 1e-4);
 }
 
 TEST(Filter, OfAWalkOfATenthOfAMeasurementsVarianceKnowsHalfOfItsStandardDeviation) {
