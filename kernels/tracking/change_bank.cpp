@@ -134,11 +134,11 @@ double calcShiryaevRoberts(const Model& model, const ChangeBank& bank) {
 }
 
 // Fitted to simulated lives of 1, 2, 4 and 8 parameters without a change, which differ by less than chance.
-// One false alarm in 1000 is at 275 for constants, at 165, 105 and 70 for walks of .1, .3 and 1; at 125 at
+// One false alarm in 1000 is at 275 for constants, at 170, 110 and 75 for walks of .1, .3 and 1; at 125 at
 // most where the rate is learnt.
 double calcThreshold(const Model& model, const VectorXd& ratios) {
   constexpr double kOften = 1e-3, kExponent = 0.85;
-  constexpr double kOfWalks = 45.0, kMoreOfConstants = 230.0, kSlow = 0.11;
+  constexpr double kOfWalks = 53.0, kMoreOfConstants = 222.0, kSlow = 0.11;
   constexpr double kOfUnknown = 125.0, kMoreOfUnknown = 1.2;
   double mean = 0.0;
   for (std::size_t j = 0; j < model.drifts.size(); ++j) {
