@@ -134,13 +134,22 @@ struct TrackSession::Parts {
   TrackRecord makeRecord(const Table& table, const std::string& digest,
                          const MeasurementContext& context) const {
     TrackRecord record{table.source, digest, ""};
-    const double number = static_cast<double>(twin->getNow().tracker.getState().count + 1);
     const std::optional<double> stated = context.at ? context.at : readTrackTime(table, findSpec());
-    record.measurement.time = stated.value_or(number);
+    record.measurement.time = stated ? *stated : number(digest);
     record.measurement.conditions = readConditions(table, conditions);
     record.covariates = listCovariates(table, conditions);
     requirePlace(record);
     return record;
+  }
+
+  /// The time of what states none: its number, of what is there already that one's.
+  double number(const std::string& digest) const {
+    for (const TrackRecord& record : twin->getWindow()) {
+      if (record.digest == digest) {
+        return record.measurement.time;
+      }
+    }
+    return static_cast<double>(twin->getNow().tracker.getState().count + 1);
   }
 
   void requirePlace(const TrackRecord& record) const {

@@ -133,16 +133,18 @@ double calcShiryaevRoberts(const Model& model, const ChangeBank& bank) {
   return std::exp(largest) * calcShares(model, bank, largest).sum() / calcTotalWeight(model);
 }
 
-// Fitted to simulated lives of 1, 2, 4 and 8 parameters without a change, which differ by less than chance:
-// one false alarm in 1000 at 275 for constants, at 160, 115 and 90 for walks of .1, .3 and 1; at 125 where
-// the rate is learnt, whatever it is.
+// Fitted to simulated lives of 1, 2, 4 and 8 parameters without a change, which differ by less than chance.
+// One false alarm in 1000 is at 275 for constants, at 170, 110 and 75 for walks of .1, .3 and 1; at 125 at
+// most where the rate is learnt.
 double calcThreshold(const Model& model, const VectorXd& ratios) {
   constexpr double kOften = 1e-3, kExponent = 0.85;
-  constexpr double kOfWalks = 80.0, kMoreOfConstants = 195.0, kSlow = 0.07, kOfUnknown = 125.0;
+  constexpr double kOfWalks = 53.0, kMoreOfConstants = 222.0, kSlow = 0.11;
+  constexpr double kOfUnknown = 125.0, kMoreOfUnknown = 1.2;
   double mean = 0.0;
   for (std::size_t j = 0; j < model.drifts.size(); ++j) {
     const double of_known = kOfWalks + kMoreOfConstants / (1.0 + ratios[static_cast<Index>(j)] / kSlow);
-    mean += model.drifts[j].change_weight * (std::isnan(model.drifts[j].rate) ? kOfUnknown : of_known);
+    mean += model.drifts[j].change_weight *
+            (std::isnan(model.drifts[j].rate) ? std::min(kOfUnknown, kMoreOfUnknown * of_known) : of_known);
   }
   return mean / calcTotalWeight(model) * std::pow(kOften / model.false_alarms, kExponent);
 }

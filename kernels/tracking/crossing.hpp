@@ -17,11 +17,10 @@ struct Crossing {
   double median = kNever, lower = kNever, upper = kNever;  ///< 95 %
 };
 
-/// The probability that the level has passed the limit within a time. It is that of Brownian motion with
-/// drift (inverse Gaussian first passage). At a distance b it is
-/// Phi((m t - b) / sqrt(q t)) plus exp(2 m b / q)
-/// Phi(-(b + m t) / sqrt(q t)). The first term is integrated over level and slope in closed form, all else by
-/// Gauss-Hermite quadrature.
+/// The probability that the level has passed the limit within a time t: that of Brownian motion with drift m.
+///   Phi((m t - b) / sqrt(q t)) + exp(2 m b / q) Phi(-(b + m t) / sqrt(q t))
+/// at a distance b (inverse Gaussian). Level and slope are integrated out in closed form in the first term,
+/// all else by Gauss-Hermite quadrature.
 double calcPassed(const Outlook& outlook, double limit, bool is_below, double time);
 
 /// is_below: the limit is one that the level must stay above. `longest`: a time beyond which is never.
