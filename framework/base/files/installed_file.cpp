@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 #include <link.h>
+#include <sys/auxv.h>
 
 #include <vector>
 
@@ -32,8 +33,13 @@ fs::path findOwnFolder() {
   std::error_code failure;
   const bool found = dladdr1(&kHere, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) != 0;
   const bool library = found && map->l_name != nullptr && map->l_name[0] != '\0';
-  return (library ? fs::canonical(map->l_name, failure) : fs::read_symlink("/proc/self/exe", failure))
-      .parent_path();
+  if (library) {
+    return fs::canonical(map->l_name, failure).parent_path();
+  }
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  // a root without /proc: by what it was started as
+  const auto* started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  return (failure && started != nullptr ? fs::canonical(started, failure) : program).parent_path();
 }
 
 fs::path findInstalled(const fs::path& path) {
