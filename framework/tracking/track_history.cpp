@@ -40,6 +40,8 @@ void TrackHistory::add(const TrackRecord& record) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(file_.c_str(), "ab"), &std::fclose);
   if (!file || std::fwrite(line.data(), 1, line.size(), file.get()) != line.size() ||
       std::fflush(file.get()) != 0) {
+    std::error_code ignored;
+    std::filesystem::resize_file(file_, bytes_, ignored);  // no half of a line stays
     throw std::runtime_error(file_.string() + ": cannot be written");
   }
   bytes_ += line.size();

@@ -18,7 +18,7 @@ class TrackHistory {
   /// std::runtime_error naming the file where it has less.
   TrackHistory(std::filesystem::path file, std::uint64_t bytes);
 
-  /// Appends a line.
+  /// Appends a line. Throws std::runtime_error naming the file where that fails; it is as before then.
   void add(const TrackRecord& record);
 
   std::uint64_t getBytes() const { return bytes_; }

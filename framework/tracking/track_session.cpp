@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "framework/base/files/digest.hpp"
+#include "framework/base/files/folder_lock.hpp"
+#include "framework/base/files/sync_file.hpp"
 #include "framework/base/json/json.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
@@ -75,6 +77,7 @@ bool isBarred(const std::string& status) {
 struct TrackSession::Parts {
   const InferenceSource& source;
   fs::path state;
+  FileLock lock;
   TrackOptions options;
   std::optional<TrackingSpec> tracking;
   TrackIdentity identity;
@@ -86,10 +89,12 @@ struct TrackSession::Parts {
   NormalBelief prior;
   std::optional<TrackedTwin> twin;
   std::optional<TrackHistory> history;
+  bool changed = false;  ///< since commit()
 
   Parts(const InferenceSource& from, fs::path file, TrackOptions given)
       : source(from),
         state(std::move(file)),
+        lock(state.string() + ".lock", state.string(), "another --state"),
         options(std::move(given)),
         tracking(readTracking(options.tracking, getModel())),
         identity(identify(source, tracking)),
@@ -193,9 +198,12 @@ struct TrackSession::Parts {
     }
   }
 
-  void write(const TrackRecord& record) {
-    history->add(record);
-    writeTrackFile(state, identity, *twin, history->getBytes());
+  void commit() {
+    if (changed) {
+      syncFile(getHistoryFile());  // first: the state says how much of it is there
+      writeTrackFile(state, identity, *twin, history->getBytes());
+      changed = false;
+    }
   }
 
   Json update(const Table& table, const std::string& digest, const MeasurementContext& context) {
@@ -209,8 +217,9 @@ struct TrackSession::Parts {
     Json beside{{"at", record.measurement.time}, {"counted", !is_known}, {"late", !is_known && is_late}};
     if (!is_known) {
       take(estimate, record);
+      history->add(record);  // where that fails, nothing has changed
       const tracking::Step step = twin->add(record);
-      write(record);
+      changed = true;
       beside["updates"] = record.measurement.values.size() > 0;
       if (!is_late) {
         beside["fits"] = step.is_used || record.measurement.values.size() == 0;
@@ -241,6 +250,10 @@ Json TrackSession::update(const std::string& text, const std::string& name,
 Json TrackSession::updateFile(const fs::path& file, const MeasurementContext& context) {
   return parts_->update(readTable(file, parts_->columns, parts_->inference->getMissingCells()),
                         toHex(calcFileDigest(file)), context);
+}
+
+void TrackSession::commit() {
+  parts_->commit();
 }
 
 Json TrackSession::getState() const {

@@ -38,16 +38,18 @@ class TrackSession {
  public:
   /// Goes on from the state file where there is one, else begins it with the first measurement. The history
   /// is beside it (getHistoryFile). Throws ExperimentError for options that are wrong, std::runtime_error
-  /// naming the file for one that is damaged, of another version or of another run.
+  /// naming the file for one that is damaged, of another version or of another run, or in use.
   TrackSession(const InferenceSource& source, std::filesystem::path state, TrackOptions options);
   ~TrackSession();
 
-  /// Infers the measurement, updates the belief and writes the state; the answer is that of `infer --json`
-  /// with `track` beside. State and history are written then. text: a CSV table as a file has it. name: what
-  /// stands for the file in answers and errors. Throws MeasurementError where it cannot be used: nothing is
-  /// written then.
+  /// Infers the measurement and updates the belief; the answer, which commit() goes before, is that of
+  /// `infer --json` with `track` beside. text: a CSV table as a file has it. name: what stands for the file
+  /// in answers and errors. Throws MeasurementError where it cannot be used: nothing has changed then.
   Json update(const std::string& text, const std::string& name, const MeasurementContext& context);
   Json updateFile(const std::filesystem::path& file, const MeasurementContext& context);
+  /// Waits until history and state are on the disk with all updates. What was not committed is as if it had
+  /// not come. Throws std::runtime_error naming the file.
+  void commit();
 
   /// The belief now: "measurements", "time", "parameters" (mean, sd, lower, upper, unit, rate), "covariance",
   /// "alarms", "forecast".

@@ -20,14 +20,6 @@ std::string describeOwner(int descriptor) {
   return size > 0 ? "process " + std::string(text, static_cast<std::size_t>(size)) : "another process";
 }
 
-std::string describeRefusal(const fs::path& folder, int descriptor, int error) {
-  if (error == EWOULDBLOCK) {
-    return folder.string() + ": is in use by " + describeOwner(descriptor) +
-           "; wait until it has ended, or give another folder";
-  }
-  return (folder / "lock").string() + ": cannot be locked: " + std::strerror(error);
-}
-
 /// Some network file systems have no locks. What they would prevent there does no harm: two runs of one
 /// experiment write the same files, each whole.
 bool isWithoutLocks(int error) {
@@ -44,20 +36,23 @@ void writeOwner(int descriptor) {
 
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder)
-    : descriptor_(::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+FileLock::FileLock(const fs::path& file, const std::string& locked, const std::string& instead)
+    : descriptor_(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) {
-    throw std::runtime_error((folder / "lock").string() + ": cannot be opened: " + std::strerror(errno));
+    throw std::runtime_error(file.string() + ": cannot be opened: " + std::strerror(errno));
   }
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && !isWithoutLocks(errno)) {
-    const std::string refusal = describeRefusal(folder, descriptor_, errno);
+    const std::string refusal = errno == EWOULDBLOCK
+                                    ? locked + ": is in use by " + describeOwner(descriptor_) +
+                                          "; wait until it has ended, or give " + instead
+                                    : file.string() + ": cannot be locked: " + std::strerror(errno);
     ::close(descriptor_);
     throw std::runtime_error(refusal);
   }
   writeOwner(descriptor_);
 }
 
-FolderLock::~FolderLock() {
+FileLock::~FileLock() {
   [[maybe_unused]] const int emptied = ::ftruncate(descriptor_, 0);
   ::close(descriptor_);
 }

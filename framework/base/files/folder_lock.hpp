@@ -5,20 +5,28 @@
 
 namespace twinmap {
 
-/// Keeps a folder for one owner as long as it lives: a second one, in another process or this one, is refused
-/// with an error that names the folder and the owner's process. The lock is the operating system's (flock on
-/// the file `lock` in the folder), so that it dies with its owner, however that ends; the file stays, empty.
-/// On a file system that has no locks nobody is refused.
-class FolderLock {
+/// Keeps something for one owner as long as it lives: a second one, in another process or this one, is
+/// refused with an error that names it and the owner's process. The lock is the operating system's (flock on
+/// a file), so that it dies with its owner, however that ends; the file stays, empty. On a file system that
+/// has no locks nobody is refused.
+class FileLock {
  public:
-  /// The folder must exist. Throws std::runtime_error if it is in use or cannot be locked.
-  explicit FolderLock(const std::filesystem::path& folder);
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-  ~FolderLock();
+  /// file: made where it is not there, in a folder that exists. locked: what it keeps; instead: what to give
+  /// in its place. Throws std::runtime_error if it is in use or cannot be locked.
+  FileLock(const std::filesystem::path& file, const std::string& locked, const std::string& instead);
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+  ~FileLock();
 
  private:
   int descriptor_;
+};
+
+/// Keeps a folder, which must exist, by the file `lock` in it.
+class FolderLock : public FileLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder)
+      : FileLock(folder / "lock", folder.string(), "another folder") {}
 };
 
 /// "process 1234", if someone has the folder's lock, else "". Takes the lock for a moment to find out.

@@ -1,6 +1,5 @@
 #include "framework/serve/twin/track_service.hpp"
 
-#include "framework/base/files/sync_file.hpp"
 #include "framework/base/json/json.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/source_location.hpp"
@@ -42,26 +41,7 @@ double parseAt(const std::string& text) {
 }
 
 TrackService::TrackService(const InferenceSource& source, std::filesystem::path state, TrackOptions options)
-    : source_(source),
-      state_(std::move(state)),
-      options_(std::move(options)),
-      session_(std::make_unique<TrackSession>(source_, state_, options_)) {}
-
-TrackSession& TrackService::getSession() const {
-  if (session_ == nullptr) {
-    throw std::runtime_error(lost_);
-  }
-  return *session_;
-}
-
-void TrackService::reopen() {
-  session_.reset();
-  try {
-    session_ = std::make_unique<TrackSession>(source_, state_, options_);
-  } catch (const std::exception& error) {
-    lost_ = error.what();
-  }
-}
+    : session_(source, std::move(state), std::move(options)) {}
 
 Json TrackService::answer(const PostedMeasurement& posted) {
   if (!posted.trial.empty()) {
@@ -72,36 +52,23 @@ Json TrackService::answer(const PostedMeasurement& posted) {
   if (!posted.at.empty()) {
     context.at = parseAt(posted.at);
   }
-  try {
-    Json answer = getSession().update(posted.text, posted.name.empty() ? kUnnamed : posted.name, context);
-    changed_ = true;
-    return answer;
-  } catch (const ExperimentError&) {
-    throw;  // nothing has changed
-  } catch (const std::exception&) {
-    reopen();
-    throw;
-  }
+  return session_.update(posted.text, posted.name.empty() ? kUnnamed : posted.name, context);
 }
 
 void TrackService::commit() {
-  const TrackSession& session = getSession();
-  if (changed_) {
-    syncFile(session.getHistoryFile());  // the state was synced when it was replaced
-    changed_ = false;
-  }
+  session_.commit();
 }
 
 Json TrackService::getState() const {
-  return getSession().getState();
+  return session_.getState();
 }
 
 std::string TrackService::makeHistory(std::size_t most) const {
-  return keepNewest(getSession().makeHistory(), most);
+  return keepNewest(session_.makeHistory(), most);
 }
 
 std::string TrackService::makePage() const {
-  return getSession().makePage();
+  return session_.makePage();
 }
 
 }  // namespace twinmap::serve

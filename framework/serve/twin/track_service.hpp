@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
 
 #include "framework/serve/live/measurement_service.hpp"
@@ -22,17 +21,7 @@ class TrackService final : public MeasurementService {
   std::string makePage() const override;
 
  private:
-  /// Throws std::runtime_error after reopen() has failed.
-  TrackSession& getSession() const;
-  /// The twin as it is on disk. commit() says where that failed.
-  void reopen();
-
-  const InferenceSource& source_;
-  const std::filesystem::path state_;
-  const TrackOptions options_;
-  std::unique_ptr<TrackSession> session_;
-  std::string lost_;      // why there is none
-  bool changed_ = false;  // since commit()
+  TrackSession session_;
 };
 
 /// A time as it is posted: ISO 8601, or seconds since 1970. Throws ExperimentError.

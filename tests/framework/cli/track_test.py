@@ -1,9 +1,10 @@
 """One twin over time: twinmap track."""
 import json
 import shutil
+import subprocess
 import unittest
 
-from support import EXPERIMENTS, FolderTestCase, call, read_csv
+from support import EXPERIMENTS, TWINMAP, FolderTestCase, call, read_csv
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 TRACKING = """
@@ -66,6 +67,24 @@ class Track(FolderTestCase):
         self.assertEqual(len(self.track("c.h5", "--folder", inbox).stdout.splitlines()), 1)
         shutil.copy(self.files[1], inbox)
         self.assertEqual(len(self.track("c.h5", "--folder", inbox).stdout.splitlines()), 1)
+
+    def test_one_process_at_a_time_and_no_answer_is_lost_where_it_is_killed(self):
+        follow = [TWINMAP, "track", CART, "--follow", "--state", self.folder / "g.h5", "--tracking", self.tracking]
+        with subprocess.Popen(follow, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as first:
+            for file in self.files[:2]:
+                first.stdin.write(file.read_text() + "\n")
+                first.stdin.flush()
+            answered = [json.loads(first.stdout.readline())["track"]["measurements"] for _ in range(2)]
+            second = self.track("g.h5", self.files[2])
+            first.kill()
+        self.assertEqual(answered, [1, 2])
+        self.assertNotEqual(second.returncode, 0)
+        self.assertIn(
+            f"g.h5: is in use by process {first.pid}; wait until it has ended, or give another --state", second.stderr
+        )
+        with open(self.folder / "g.jsonl", "a") as history:
+            history.write('{"half of a line')  # of a measurement that was not answered
+        self.assertEqual(json.loads(self.track("g.h5", self.files[2]).stdout)["track"]["measurements"], 3)
 
     def test_a_state_of_another_section_is_refused(self):
         self.track("d.h5", self.files[0])

@@ -105,6 +105,7 @@ class TrackCommand {
     try {
       WaitingLine waiting("track " + name);
       const Json answer = update();
+      session_.commit();
       waiting.clear();
       std::cout << formatJson(answer) << '\n';
     } catch (const std::exception& error) {
