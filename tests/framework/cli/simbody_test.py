@@ -3,6 +3,7 @@ import os
 import shutil
 import subprocess
 import unittest
+from pathlib import Path
 
 from support import EXPERIMENTS, TWINMAP, FolderTestCase, RunTestCase
 
@@ -33,6 +34,14 @@ class Loaded(RunTestCase):
 
 
 class Missing(FolderTestCase):
+    """The command with its database of units alone."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        units = "share/twinmap/units"
+        shutil.copytree(Path(TWINMAP).parents[2] / units, cls.folder / units)
+
     def test_what_is_missing_is_named(self):
         alone = shutil.copy2(TWINMAP, self.folder / "twinmap")
         result = call_with(alone, "simulate", CART)
