@@ -127,35 +127,31 @@ struct InferArguments {
   bool diagnose = false;            ///< of each model_mismatch, say at length what the model lacks
 };
 
-struct TrackArguments {
-  std::string run;                 ///< as of infer
-  std::vector<std::string> files;  ///< measurements, in any order within the lag
-  std::string state;               ///< file of the belief
-  std::string tracking;            ///< file with a section `tracking:`; "": the experiment file's own
-  std::string at;                  ///< time of the one measurement; "": by its table, else its number
-  std::optional<double> start;     ///< as of infer
-  std::string folder;              ///< whose files are tracked; "": none
-  bool follow = false;             ///< measurements from the standard input
-  std::vector<std::string> use;    ///< statuses that update all the same
-  std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
-  int lag = 100;                   ///< measurements back that a late one may belong to
-  std::string history, page;       ///< files for track.csv and the page; "": none
-  std::optional<bool> refine;      ///< none: as the experiment says
-  int threads = 0;                 ///< 0: all
-};
-
-struct ServeArguments {
+/// Of the commands that keep a twin in time.
+struct TwinArguments {
   std::string run;               ///< folder of a run, its maps.h5, or an experiment file
   std::string state;             ///< file of the belief
-  std::string tracking;          ///< file with a section `tracking:`; "": the experiment's own
+  std::string tracking;          ///< file with a section `tracking:`; "": the experiment file's own
   std::vector<std::string> use;  ///< statuses of measurements that update although they do not by themselves
   std::vector<std::string> known;  ///< "NAME=VALUE" of the inputs
   std::optional<bool> refine;      ///< none: as the experiment says
   int lag = 100;                   ///< measurements back that a late one may belong to
+  int threads = 0;                 ///< 0: all
+};
+
+struct TrackArguments : TwinArguments {
+  std::vector<std::string> files;  ///< measurements, in any order within the lag
+  std::string at;                  ///< time of the one measurement; "": by its table, else its number
+  std::optional<double> start;     ///< as of infer
+  std::string folder;              ///< whose files are tracked; "": none
+  bool follow = false;             ///< measurements from the standard input
+  std::string history, page;       ///< files for track.csv and the page; "": none
+};
+
+struct ServeArguments : TwinArguments {
   std::string listen = "127.0.0.1:8765";
   std::string token_file;             ///< "": no token
   std::string mqtt_host, mqtt_topic;  ///< "": no MQTT
-  int threads = 0;                    ///< 0: all
 };
 
 struct DiagnoseArguments {

@@ -1,7 +1,6 @@
 #include "framework/serve/twin/track_service.hpp"
 
 #include "framework/base/json/json.hpp"
-#include "framework/base/text/number_text.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/data/measurement/files/time_stamp.hpp"
 
@@ -33,7 +32,7 @@ std::string keepNewest(const std::string& csv, std::size_t most) {
 
 double parseAt(const std::string& text) {
   double seconds = 0.0;
-  if (!parseTimeStamp(text, seconds) && !parseLiteral(text, seconds)) {
+  if (!parseTime(text, seconds)) {
     throw ExperimentError("at: '" + text + "' must be a date and time, or seconds since 1970" +
                           "\n  such as 2026-11-26T10:00:00Z");
   }

@@ -5,7 +5,7 @@
 
 #include "framework/base/log/log.hpp"
 #include "framework/base/text/source_location.hpp"
-#include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/measurements/track_options.hpp"
 #include "framework/cli/signals.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/serve/live/twin_server.hpp"
@@ -15,16 +15,6 @@
 
 namespace twinmap::cli {
 namespace {
-
-TrackOptions makeTrackOptions(const ServeArguments& arguments) {
-  TrackOptions options;
-  options.tracking = findTracking(arguments.run, arguments.tracking);
-  options.use = arguments.use;
-  options.known = arguments.known;
-  options.lag = arguments.lag;
-  options.session.refine = arguments.refine;
-  return options;
-}
 
 serve::Access makeAccess(const ServeArguments& arguments, const serve::ListenAddress& address) {
   if (!arguments.token_file.empty()) {

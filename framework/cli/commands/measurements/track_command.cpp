@@ -8,14 +8,12 @@
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/digest.hpp"
 #include "framework/base/json/json.hpp"
-#include "framework/base/text/number_text.hpp"
-#include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/measurements/track_options.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/data/measurement/files/time_stamp.hpp"
 #include "framework/inference/measurement/measurement_stream.hpp"
 #include "framework/inference/text/inference_text.hpp"
 #include "framework/simulation/simulator_team.hpp"
-#include "framework/tracking/track_session.hpp"
 
 namespace twinmap::cli {
 namespace {
@@ -27,21 +25,11 @@ std::optional<double> readTime(const std::string& text) {
   if (text.empty()) {
     return {};
   }
-  if (!parseTimeStamp(text, time) && !parseLiteral(text, time)) {
+  if (!parseTime(text, time)) {
     throw ExperimentError("--at: '" + text +
                           "' must be a date and time (2026-11-26T10:00:00Z) or seconds since 1970");
   }
   return time;
-}
-
-TrackOptions makeOptions(const TrackArguments& arguments) {
-  TrackOptions options;
-  options.tracking = findTracking(arguments.run, arguments.tracking);
-  options.use = arguments.use;
-  options.known = arguments.known;
-  options.lag = arguments.lag;
-  options.session.refine = arguments.refine;
-  return options;
 }
 
 /// Tracks one measurement after another, a line of JSON each. One that cannot be used is an error of its own.
@@ -49,7 +37,7 @@ class TrackCommand {
  public:
   explicit TrackCommand(const TrackArguments& arguments)
       : source_(arguments.run),
-        session_(source_, arguments.state, makeOptions(arguments)),
+        session_(source_, arguments.state, makeTrackOptions(arguments)),
         context_{readTime(arguments.at), arguments.start} {}
 
   void trackFile(const fs::path& file) {

@@ -12,6 +12,7 @@
 #include "framework/cli/commands/commands.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/diagnosis/held_out.hpp"
+#include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/experiment/check/known_names.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/simulation/simulator_team.hpp"

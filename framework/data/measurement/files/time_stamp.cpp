@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "framework/base/text/number_text.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -100,6 +102,10 @@ bool parseTimeStamp(std::string_view text, double& seconds) {
   const std::int64_t whole = 86400 * countDays(year, month, day) + 3600 * hour + 60 * minute + second - zone;
   seconds = static_cast<double>(whole) + fraction;
   return true;
+}
+
+bool parseTime(const std::string& text, double& seconds) {
+  return parseTimeStamp(text, seconds) || parseLiteral(text, seconds);
 }
 
 }  // namespace twinmap

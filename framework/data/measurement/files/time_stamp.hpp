@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace twinmap {
@@ -8,5 +9,8 @@ namespace twinmap {
 /// since 1970-01-01 UTC; without a zone it is UTC. Fractions of a second after a point or a comma. Returns
 /// false for another text. Precise to 0.24 us, the spacing of such numbers.
 bool parseTimeStamp(std::string_view text, double& seconds);
+
+/// The same, or a number of seconds since 1970.
+bool parseTime(const std::string& text, double& seconds);
 
 }  // namespace twinmap
