@@ -37,6 +37,11 @@ endif()
 if(TWINMAP_REPRODUCIBLE)
   add_compile_options("-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.")
 endif()
+if(TWINMAP_LIBRARIES)
+  # Units are compiled in batches and taken in whole: a release keeps the functions that are called.
+  add_compile_options(-ffunction-sections -fdata-sections)
+  add_link_options(-Wl,--gc-sections)
+endif()
 if(TWINMAP_WARNINGS_AS_ERRORS)
   add_compile_options($<$<COMPILE_LANGUAGE:C,CXX>:-Werror>) # not assembly, whose compiler has no use for most options
 endif()
