@@ -86,20 +86,25 @@ void addHeaders(const std::filesystem::path& folder, int version, std::vector<Ar
   }
 }
 
-std::string compile(const std::string& fmu, const std::filesystem::path& folder, const FmuIdentity& identity,
-                    int version) {
+/// The library of this platform, compiled from folder/sources; nothing without a compiler.
+std::vector<ArchiveFile> compile(const std::string& fmu, const std::filesystem::path& folder,
+                                 const FmuIdentity& identity, int version) {
   fmi::Capabilities capabilities;
   capabilities.model_identifier = identity.identifier;
   capabilities.source_files = identity.sources;
   const std::filesystem::path library = folder / "library.so";
-  fmi::compileSources(
-      {fmu, folder / "sources", capabilities, version == 2 ? fmi::Version::k2 : fmi::Version::k3}, library);
-  return readBytes(library);
+  if (!fmi::compileSources(
+          {fmu, folder / "sources", capabilities, version == 2 ? fmi::Version::k2 : fmi::Version::k3},
+          library)) {
+    return {};
+  }
+  const std::string& platform = fmi::listOwnPlatforms()[version == 2 ? 1 : 0];
+  return {{fmt::format("binaries/{}/{}.so", platform, identity.identifier), readBytes(library)}};
 }
 
 }  // namespace
 
-void writeFmu(const ExportedModel& model, const std::filesystem::path& file, int version) {
+bool writeFmu(const ExportedModel& model, const std::filesystem::path& file, int version) {
   requireOneTrial(model.experiment, "an FMU infers from the signals of one recording");
   if (!model.takesSignals()) {
     throw ExperimentError("export --fmu: the features are modes, which no signal gives");
@@ -118,10 +123,10 @@ void writeFmu(const ExportedModel& model, const std::filesystem::path& file, int
     writeTextFile(folder.getPath() / "sources" / source.name, source.content);
     files.push_back({"sources/" + source.name, source.content});
   }
-  files.push_back(
-      {fmt::format("binaries/{}/{}.so", fmi::listOwnPlatforms()[version == 2 ? 1 : 0], identity.identifier),
-       compile(file.string(), folder.getPath(), identity, version)});
+  const std::vector<ArchiveFile> compiled = compile(file.string(), folder.getPath(), identity, version);
+  files.insert(files.end(), compiled.begin(), compiled.end());
   fmi::writeArchive(file, files);
+  return !compiled.empty();
 }
 
 }  // namespace twinmap

@@ -28,8 +28,11 @@ void exportMap(const ExportArguments& arguments) {
     writeCFolder(arguments.run, arguments.c_folder, options, std::cout);
   }
   if (!arguments.fmu.empty()) {
-    writeFmu(loadExportedModel(arguments.run), arguments.fmu, arguments.fmi);
-    std::cout << fmt::format("{}: FMI {}.0, Co-Simulation\n", arguments.fmu, arguments.fmi);
+    const bool compiled = writeFmu(loadExportedModel(arguments.run), arguments.fmu, arguments.fmi);
+    std::cout << fmt::format(
+        "{}: FMI {}.0, Co-Simulation{}\n", arguments.fmu, arguments.fmi,
+        compiled ? ""
+                 : ", in sources alone: there is no C compiler here (cc, or CC) to make a library of them");
   }
   if (!arguments.json.empty()) {
     writeTextFile(arguments.json, makeMapJson(loadExportedModel(arguments.run)));

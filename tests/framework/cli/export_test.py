@@ -328,6 +328,16 @@ class Processes(Exported):
             with self.subTest(version=version):
                 self.check_fmu(version)
 
+    def test_without_a_compiler_an_fmu_has_its_sources(self):
+        file = self.folder / "sources.fmu"
+        result = call("export", self.trained, "--fmu", file, env={**os.environ, "CC": "/nowhere/cc"})
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("in sources alone: there is no C compiler here", result.stdout)
+        names = zipfile.ZipFile(file).namelist()
+        self.assertIn("sources/fmu.c", names)
+        self.assertFalse([name for name in names if name.startswith("binaries/")])
+        self.assertIn("mean.k_y", call("variables", file).stdout)
+
     def check_fmu(self, version):
         file = self.folder / f"map{version}.fmu"
         result = call("export", self.trained, "--fmu", file, "--fmi", version)

@@ -99,9 +99,7 @@ Build readBuild(const SourceTree& tree) {
 
 std::vector<std::string> composeCommand(const SourceTree& tree, const Build& build, const fs::path& headers,
                                         const fs::path& library) {
-  const char* own = std::getenv("CC");
-  std::vector<std::string> command{
-      own != nullptr && *own != '\0' ? own : "cc", "-shared", "-fPIC", "-O2", "-w", "-I."};
+  std::vector<std::string> command{getCompiler(), "-shared", "-fPIC", "-O2", "-w", "-I."};
   if (tree.version == Version::k3) {
     command.emplace_back("-DFMI3_OVERRIDE_FUNCTION_PREFIX");  // names in a library of its own have no prefix
   }
@@ -124,21 +122,24 @@ std::string readBeginning(const fs::path& path) {
 
 }  // namespace
 
-void compileSources(const SourceTree& tree, const fs::path& library) {
+std::string getCompiler() {
+  const char* own = std::getenv("CC");
+  return own != nullptr && *own != '\0' ? own : "cc";
+}
+
+bool compileSources(const SourceTree& tree, const fs::path& library) {
   const Build build = readBuild(tree);
   const fs::path headers = library.parent_path() / "fmi-headers",
                  log = library.parent_path() / "compiler.log";
   writeStandardHeaders(headers);
   const std::vector<std::string> command = composeCommand(tree, build, headers, library);
   const int status = runProgram(command, tree.folder, log);
-  if (status == -1 || status == 127) {
-    fail(tree, "has no library for this platform, and its sources need a C compiler: '" + command[0] +
-                   "' cannot be started");
-  }
-  if (status != 0) {
+  const bool started = status != -1 && status != 127;
+  if (started && status != 0) {
     fs::remove(library);
     fail(tree, "its sources do not compile:\n" + readBeginning(log));
   }
+  return started;
 }
 
 }  // namespace twinmap::fmi

@@ -167,7 +167,11 @@ fs::path Package::requireLibrary(Kind kind) const {
                           can.model_identifier + ".so" +
                           (platforms.empty() ? ", and no sources" : "; there are: " + listNames(platforms)));
   }
-  compileSources({getFile(), getFolder() / "sources", can, getDescription().version}, compiled);
+  if (!compileSources({getFile(), getFolder() / "sources", can, getDescription().version}, compiled)) {
+    throw ExperimentError(getFile() +
+                          ": has no library for this platform, and its sources need a C compiler: '" +
+                          getCompiler() + "' cannot be started");
+  }
   return compiled;
 }
 
