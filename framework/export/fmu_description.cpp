@@ -54,7 +54,26 @@ void addEstimates(const ExportedModel& model, const char* group, const char* mea
   }
 }
 
-std::vector<FmuVariable> listVariables(const ExportedModel& model) {
+/// Of what is followed over time.
+void addTrack(const ExportedModel& model, std::vector<FmuVariable>& variables) {
+  addEstimates(model, "track.mean", "tracked parameter", variables);
+  addEstimates(model, "track.sd", "its standard deviation", variables);
+  addEstimates(model, "track.lower", "lower end of its 95 % interval", variables);
+  addEstimates(model, "track.upper", "upper end of its 95 % interval", variables);
+  variables.push_back(
+      {"Real", "track.alarm.statistic", "", "1 and above is an alarm", "output", "discrete", "0.0"});
+  variables.push_back({"Real", "track.alarm.time", "s", "of the last change", "output", "discrete", "0.0"});
+  variables.push_back({"Real", "track.alarm.size", "", "of the last change, in the parameter's unit",
+                       "output", "discrete", "0.0"});
+  variables.push_back(
+      {"Real", "track.alarm.sd", "", "of that size, in the parameter's unit", "output", "discrete", "0.0"});
+  variables.push_back(
+      {"Integer", "track.alarms", "", "how many changes were announced", "output", "discrete", "0"});
+  variables.push_back({"Integer", "track.alarm.parameter", "",
+                       "that changed last, from 1; 0: none, or several at once", "output", "discrete", "0"});
+}
+
+std::vector<FmuVariable> listVariables(const ExportedModel& model, bool tracks) {
   std::vector<FmuVariable> variables;
   addInputVariables(model, variables);
   addEstimates(model, "mean", "inferred parameter", variables);
@@ -69,6 +88,9 @@ std::vector<FmuVariable> listVariables(const ExportedModel& model) {
   variables.push_back({"Integer", "inferences", "", "how many there have been", "output", "discrete", "0"});
   variables.push_back({"Integer", "measurement_error", "",
                        "why the last window could not be used; 0: it could", "output", "discrete", "0"});
+  if (tracks) {
+    addTrack(model, variables);
+  }
   return variables;
 }
 
@@ -174,7 +196,7 @@ std::string makeInterface(const FmuIdentity& identity, int version) {
 }  // namespace
 
 std::string makeFmuDescription(const ExportedModel& model, const FmuIdentity& identity, int version) {
-  const std::vector<FmuVariable> variables = listVariables(model);
+  const std::vector<FmuVariable> variables = listVariables(model, identity.tracks);
   const Eigen::VectorXd& times = model.layout.times;
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"{}.0\" modelName=\"{}\" "

@@ -12,6 +12,7 @@ struct FmuIdentity {
   std::string identifier;            ///< of the model, a C identifier
   std::string token;                 ///< GUID, or instantiation token
   std::vector<std::string> sources;  ///< C files in sources/
+  bool tracks = false;               ///< the parameters over time, too
 };
 
 /// modelDescription.xml of FMI 2 or 3. Value references are those of runtime/fmu.h.

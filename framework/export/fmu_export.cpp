@@ -11,6 +11,7 @@
 #include "framework/export/c_code/c_source.hpp"
 #include "framework/export/c_code/runtime_sources.hpp"
 #include "framework/export/fmu_description.hpp"
+#include "framework/export/tracking/track_source.hpp"
 #include "framework/models/fmu/package/compile_sources.hpp"
 #include "framework/models/fmu/package/package.hpp"
 #include "framework/models/fmu/package/standard_headers.hpp"
@@ -64,17 +65,29 @@ std::string makeBlock(const ExportedModel& model) {
   return fillSlot(std::move(text), "@SD_STARTS@", listNumbers(prior.stddev.head(p)));
 }
 
-std::vector<ArchiveFile> makeSources(const ExportedModel& model, int version, FmuIdentity& identity) {
+std::vector<ArchiveFile> makeSources(const ExportedModel& model, int version,
+                                     const ExportedTracking* tracking, FmuIdentity& identity) {
   const std::string& prefix = identity.identifier;
   const CSource source = makeCSource(model, {CNumber::kDouble, prefix});
   const std::string interface = fmt::format("fmi{}.c", version);
-  identity.token = makeToken(source.source);
+  std::string all = source.source;
+  std::vector<ArchiveFile> files{{prefix + "_map.h", source.header}, {prefix + "_map.c", source.source}};
   identity.sources = {prefix + "_map.c", "fmu.c", interface};
-  return {{prefix + "_map.h", source.header},
-          {prefix + "_map.c", source.source},
-          {"fmu.h", renameC(std::string(getRuntimeSource("fmu.h")), prefix)},
-          {"fmu.c", renameC(makeBlock(model), prefix)},
-          {interface, fillSlot(std::string(getRuntimeSource(interface)), "@TOKEN@", identity.token)}};
+  if (tracking != nullptr) {
+    const CTrackSource tracker = makeTrackSource(model, *tracking, prefix);
+    identity.sources.push_back(prefix + "_track.c");
+    files.push_back({prefix + "_track.h", tracker.header});
+    files.push_back({prefix + "_track.c", tracker.source});
+    all += tracker.source;
+  }
+  identity.tracks = tracking != nullptr;
+  identity.token = makeToken(all);
+  const std::string header =
+      fillSlot(std::string(getRuntimeSource("fmu.h")), "@TRACKS@", identity.tracks ? "1" : "0");
+  files.push_back({"fmu.h", renameC(header, prefix)});
+  files.push_back({"fmu.c", renameC(makeBlock(model), prefix)});
+  files.push_back({interface, fillSlot(std::string(getRuntimeSource(interface)), "@TOKEN@", identity.token)});
+  return files;
 }
 
 void addHeaders(const std::filesystem::path& folder, int version, std::vector<ArchiveFile>& sources) {
@@ -104,15 +117,21 @@ std::vector<ArchiveFile> compile(const std::string& fmu, const std::filesystem::
 
 }  // namespace
 
-bool writeFmu(const ExportedModel& model, const std::filesystem::path& file, int version) {
+bool writeFmu(const ExportedModel& model, const std::filesystem::path& file, int version,
+              const ExportedTracking* tracking) {
   requireOneTrial(model.experiment, "an FMU infers from the signals of one recording");
   if (!model.takesSignals()) {
     throw ExperimentError("export --fmu: the features are modes, which no signal gives");
   }
+  if (tracking != nullptr && !tracking->conditions.empty()) {
+    throw ExperimentError(
+        "export --fmu --track: parameters follow conditions, for which the FMU has no inputs; leave "
+        "tracking.follows out, or export C");
+  }
   FmuIdentity identity;
   identity.identifier = makeIdentifier(model.experiment.name.text);
   const TemporaryFolder folder;
-  std::vector<ArchiveFile> sources = makeSources(model, version, identity);
+  std::vector<ArchiveFile> sources = makeSources(model, version, tracking, identity);
   addHeaders(folder.getPath() / "headers", version, sources);
   if (version == 3) {
     sources.push_back({"buildDescription.xml", makeBuildDescription(identity)});

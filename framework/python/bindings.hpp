@@ -21,6 +21,7 @@ void bindMap(nanobind::module_& module);
 void bindJoint(nanobind::module_& module);
 void bindDiagnosis(nanobind::module_& module);
 void bindRobots(nanobind::module_& module);
+void bindTrack(nanobind::module_& module);
 void bindView(nanobind::module_& module);
 
 }  // namespace twinmap::python

@@ -25,5 +25,6 @@ NB_MODULE(_twinmap, module) {
   twinmap::python::bindJoint(module);
   twinmap::python::bindDiagnosis(module);
   twinmap::python::bindRobots(module);
+  twinmap::python::bindTrack(module);
   twinmap::python::bindView(module);
 }

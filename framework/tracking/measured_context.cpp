@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/data/measurement/measurement.hpp"
 #include "framework/data/measurement/time_series.hpp"
 
 namespace twinmap {
@@ -46,6 +47,31 @@ std::optional<double> readTrackTime(const Table& table, const TrackingSpec* trac
                            "' does not begin with a time: a date and time, or seconds since 1970");
   }
   return time;
+}
+
+Table takeWindow(const Table& table, const MeasurementReader& reader, std::optional<double> start) {
+  const VectorXd& times = reader.getLayout().times;
+  const Index rows = table.columns.empty() ? 0 : table.columns.front().values.size();
+  const bool is_even = std::all_of(table.columns.begin(), table.columns.end(),
+                                   [&](const Column& column) { return column.values.size() == rows; });
+  if (times.size() == 0 || reader.findReduction() != nullptr || !is_even) {
+    return table;
+  }
+  const double first = reader.getStart(table, start), last = first + times[times.size() - 1];
+  const double slack = 1e-6 * (last - first);  // as times are compared when they are read
+  const VectorXd measured =
+      readUnorderedTimes(table, makeTimeBase(reader.getExperiment().measurement, 0.0), rows);
+  std::vector<Index> within;
+  for (Index i = 0; i < measured.size(); ++i) {
+    if (measured[i] >= first - slack && measured[i] <= last + slack) {
+      within.push_back(i);
+    }
+  }
+  Table window{table.source, {}, {}};
+  for (const Column& column : table.columns) {
+    window.columns.push_back({column.name, column.unit, column.values(within)});
+  }
+  return window;
 }
 
 VectorXd readConditions(const Table& table, const std::vector<std::string>& conditions) {

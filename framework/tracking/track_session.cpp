@@ -7,9 +7,9 @@
 #include <limits>
 #include <sstream>
 
+#include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/digest.hpp"
 #include "framework/base/files/folder_lock.hpp"
-#include "framework/base/files/sync_file.hpp"
 #include "framework/base/json/json.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
@@ -29,16 +29,16 @@ namespace twinmap {
 
 namespace fs = std::filesystem;
 
-fs::path findTracking(const fs::path& run_or_experiment, const fs::path& given) {
+std::optional<TrackingSpec> findTracking(const fs::path& run_or_experiment, const fs::path& given) {
   if (!given.empty()) {
-    if (!loadTracking(given.string())) {
+    std::optional<TrackingSpec> tracking = loadTracking(given.string());
+    if (!tracking) {
       throw ExperimentError(given.string() +
                             ": has no section 'tracking'; write one, as docs/reference says");
     }
-    return given;
+    return tracking;
   }
-  const bool is_yaml = run_or_experiment.extension() == ".yaml" || run_or_experiment.extension() == ".yml";
-  return is_yaml && loadTracking(run_or_experiment.string()) ? run_or_experiment : fs::path();
+  return isExperimentFile(run_or_experiment) ? loadTracking(run_or_experiment.string()) : std::nullopt;
 }
 
 namespace {
@@ -47,22 +47,8 @@ std::string digestText(const std::string& text) {
   return toHex(calcDigest(text.data(), text.size()));
 }
 
-std::optional<TrackingSpec> readTracking(const fs::path& file, const ModelSpec& model) {
-  std::optional<TrackingSpec> tracking;
-  if (!file.empty()) {
-    tracking = loadTracking(file.string());
-  }
-  if (tracking) {
-    checkTracking(*tracking, model);
-  }
-  return tracking;
-}
-
-TrackIdentity identify(const InferenceSource& source, const std::optional<TrackingSpec>& tracking) {
-  const std::string estimator =
-      source.findTrained() != nullptr ? source.findTrained()->getMap().getKind() : "posterior";
-  return {source.getExperiment().name.text, digestText(writeExperiment(source.getExperiment()) + estimator),
-          tracking ? writeTracking(*tracking) : ""};
+TrackIdentity identify(const TwinSource& source, const std::optional<TrackingSpec>& tracking) {
+  return {source.getName(), digestText(source.describe()), tracking ? writeTracking(*tracking) : ""};
 }
 
 /// Of a status, whether a measurement with it does not update: the model does not hold for it, or nothing
@@ -72,18 +58,34 @@ bool isBarred(const std::string& status) {
          status == "unreliable" || status == "not_simulated";
 }
 
+TrackOptions check(TrackOptions options, const ModelSpec& model) {
+  if (options.lag < 1) {
+    throw ExperimentError("--lag must be at least 1");
+  }
+  if (options.tracking) {
+    checkTracking(*options.tracking, model);
+  }
+  return options;
+}
+
 }  // namespace
 
 struct TrackSession::Parts {
-  const InferenceSource& source;
+  /// One trial's, or the experiment's where it has none.
+  struct TrialInference {
+    const MeasurementReader& reader;
+    std::unique_ptr<MeasurementInference> inference;
+    Eigen::VectorXd known;
+    std::vector<std::string> columns{};
+  };
+
+  const TwinSource& source;
   fs::path state;
   FileLock lock;
   TrackOptions options;
-  std::optional<TrackingSpec> tracking;
   TrackIdentity identity;
-  std::unique_ptr<MeasurementInference> inference;
-  Eigen::VectorXd known;
-  std::vector<std::string> conditions, columns;
+  std::vector<TrialInference> trials;
+  std::vector<std::string> conditions;
   TrackSpace space;
   tracking::Model model;
   NormalBelief prior;
@@ -91,27 +93,17 @@ struct TrackSession::Parts {
   std::optional<TrackHistory> history;
   bool changed = false;  ///< since commit()
 
-  Parts(const InferenceSource& from, fs::path file, TrackOptions given)
+  Parts(const TwinSource& from, fs::path file, TrackOptions given)
       : source(from),
         state(std::move(file)),
         lock(state.string() + ".lock", state.string(), "another --state"),
-        options(std::move(given)),
-        tracking(readTracking(options.tracking, getModel())),
-        identity(identify(source, tracking)),
-        inference(source.makeSession(options.session)),
-        known(collectKnown(getModel().inputs, parseKnownValues(options.known))),
-        conditions(tracking ? listConditions(*tracking) : std::vector<std::string>{}),
-        columns(source.getReader().listColumns()),
+        options(check(std::move(given), getModel())),
+        identity(identify(source, options.tracking)),
+        trials(makeInferences(source, options)),
+        conditions(options.tracking ? listConditions(*options.tracking) : std::vector<std::string>{}),
         space(getModel().parameters),
         model(makeTrackModel(findSpec(), getModel(), space)),
         prior(makeTrackPrior(getModel(), space)) {
-    if (options.lag < 1) {
-      throw ExperimentError("--lag must be at least 1");
-    }
-    columns.insert(columns.end(), conditions.begin(), conditions.end());
-    if (tracking && tracking->time.column) {
-      columns.push_back(tracking->time.column->name);
-    }
     std::optional<LoadedTrack> loaded = readTrackFile(state, identity, model, options.lag);
     history.emplace(getHistoryFile(), loaded ? loaded->history_bytes : 0);
     if (loaded) {
@@ -121,8 +113,29 @@ struct TrackSession::Parts {
     }
   }
 
-  const ModelSpec& getModel() const { return source.getExperiment().model; }
-  const TrackingSpec* findSpec() const { return tracking ? &*tracking : nullptr; }
+  static std::vector<TrialInference> makeInferences(const TwinSource& source, const TrackOptions& options) {
+    std::vector<std::string> beside;  // columns that tracking asks for
+    if (options.tracking) {
+      beside = listConditions(*options.tracking);
+      if (options.tracking->time.column) {
+        beside.push_back(options.tracking->time.column->name);
+      }
+    }
+    std::vector<TrialInference> inferences;
+    const std::vector<KnownValue> known = parseKnownValues(options.known);
+    for (const TwinSource::Member& one : source.getMembers()) {
+      const MeasurementReader& reader = one.source->getReader();
+      inferences.push_back({reader, one.source->makeSession(options.session),
+                            collectKnown(reader.getExperiment().model.inputs, known), reader.listColumns()});
+      std::vector<std::string>& columns = inferences.back().columns;
+      columns.insert(columns.end(), beside.begin(), beside.end());
+    }
+    return inferences;
+  }
+
+  const ModelSpec& getModel() const { return source.getModel(); }
+  TrialInference& findTrial(const std::string& trial) { return trials[source.find(trial)]; }
+  const TrackingSpec* findSpec() const { return options.tracking ? &*options.tracking : nullptr; }
   TrackView view() const { return {getModel().parameters, space, findSpec()}; }
   fs::path getHistoryFile() const { return fs::path(state).replace_extension(".jsonl"); }
 
@@ -136,13 +149,14 @@ struct TrackSession::Parts {
     return {belief.mean.head(p), belief.covariance.topLeftCorner(p, p)};
   }
 
-  TrackRecord makeRecord(const Table& table, const std::string& digest,
+  TrackRecord makeRecord(const MeasurementReader& reader, const Table& table, const std::string& digest,
                          const MeasurementContext& context) const {
     TrackRecord record{table.source, digest, ""};
     const std::optional<double> stated = context.at ? context.at : readTrackTime(table, findSpec());
     record.measurement.time = stated ? *stated : number(digest);
-    record.measurement.conditions = readConditions(table, conditions);
-    record.covariates = listCovariates(table, conditions);
+    const Table window = takeWindow(table, reader, context.start);
+    record.measurement.conditions = readConditions(window, conditions);
+    record.covariates = listCovariates(window, conditions);
     requirePlace(record);
     return record;
   }
@@ -206,36 +220,52 @@ struct TrackSession::Parts {
     }
   }
 
-  Json update(const Table& table, const std::string& digest, const MeasurementContext& context) {
-    TrackRecord record = makeRecord(table, digest, context);
-    const InferredMeasurement inferred = inference->infer(table, context.start, known);
-    const Estimate estimate = selectEstimate(inferred);
-    Json json = makeAnswerJson(inferred, estimate, getModel().parameters,
-                               source.getReader().getExtractor().getInfos());
-    const long long alarms = twin->getNow().alarm_count;
-    const bool is_known = twin->findSame(record) != nullptr, is_late = twin->isLate(record);
-    Json beside{{"at", record.measurement.time}, {"counted", !is_known}, {"late", !is_known && is_late}};
-    if (!is_known) {
-      take(estimate, record);
-      history->add(record);  // where that fails, nothing has changed
-      const tracking::Step step = twin->add(record);
-      changed = true;
-      beside["updates"] = record.measurement.values.size() > 0;
-      if (!is_late) {
-        beside["fits"] = step.is_used || record.measurement.values.size() == 0;
-        beside["chi_square"] = step.chi_square;
-        beside["degrees"] = step.degrees;
-        beside["alarm_statistic"] = step.statistic;
-      }
+  Json update(TrialInference& trial, const Table& table, const std::string& digest,
+              const MeasurementContext& context) {
+    TrackRecord record = makeRecord(trial.reader, table, digest, context);
+    if (const TrackRecord* counted = twin->findSame(record)) {
+      return answerAgain(*counted, table.source);
     }
+    const InferredMeasurement inferred = trial.inference->infer(table, context.start, trial.known);
+    const Estimate estimate = selectEstimate(inferred);
+    Json json =
+        makeAnswerJson(inferred, estimate, getModel().parameters, trial.reader.getExtractor().getInfos());
+    const bool is_late = twin->isLate(record);
+    const double time = record.measurement.time;
+    take(estimate, record);
+    const Eigen::Index rows = record.measurement.values.size();
+    history->add(record);  // where that fails, nothing has changed
+    const long long alarms = twin->getNow().alarm_count;
+    const tracking::Step step = twin->add(std::move(record));
+    changed = true;
+    Json beside{{"at", time}, {"counted", true}, {"late", is_late}, {"updates", rows > 0}};
+    if (!is_late) {
+      beside["fits"] = step.is_used || rows == 0;
+      beside["chi_square"] = step.chi_square;
+      beside["degrees"] = step.degrees;
+      beside["alarm_statistic"] = step.statistic;
+    }
+    addTrack(std::move(beside), alarms, json);
+    return json;
+  }
+
+  /// The belief is as it is now, whatever has come since.
+  Json answerAgain(const TrackRecord& counted, const std::string& name) const {
+    Json json{{"source", name}, {"status", counted.status}};
+    addTrack({{"at", counted.measurement.time}, {"counted", false}, {"late", false}},
+             twin->getNow().alarm_count, json);
+    return json;
+  }
+
+  /// alarms: how many there were before.
+  void addTrack(Json beside, long long alarms, Json& json) const {
     json["track"] = makeTrackState(twin->getNow(), view());
     json["track"].update(beside);
     json["track"]["alarms"] = makeTrackAlarms(twin->getNow(), alarms, view());
-    return json;
   }
 };
 
-TrackSession::TrackSession(const InferenceSource& source, fs::path state, TrackOptions options)
+TrackSession::TrackSession(const TwinSource& source, fs::path state, TrackOptions options)
     : parts_(std::make_unique<Parts>(source, std::move(state), std::move(options))) {}
 
 TrackSession::~TrackSession() = default;
@@ -243,13 +273,24 @@ TrackSession::~TrackSession() = default;
 Json TrackSession::update(const std::string& text, const std::string& name,
                           const MeasurementContext& context) {
   std::istringstream stream(text);
-  return parts_->update(readCsv(stream, name, parts_->columns, parts_->inference->getMissingCells()),
+  Parts::TrialInference& trial = parts_->findTrial(context.trial);
+  return parts_->update(trial, readCsv(stream, name, trial.columns, trial.inference->getMissingCells()),
                         digestText(text), context);
 }
 
 Json TrackSession::updateFile(const fs::path& file, const MeasurementContext& context) {
-  return parts_->update(readTable(file, parts_->columns, parts_->inference->getMissingCells()),
+  Parts::TrialInference& trial = parts_->findTrial(context.trial);
+  return parts_->update(trial, readTable(file, trial.columns, trial.inference->getMissingCells()),
                         toHex(calcFileDigest(file)), context);
+}
+
+std::optional<double> TrackSession::readTime(const fs::path& file, const std::string& trial) const {
+  const TrackingSpec* tracking = parts_->findSpec();
+  if (tracking == nullptr || !tracking->time.column) {
+    return {};
+  }
+  const Parts::TrialInference& of = parts_->findTrial(trial);
+  return readTrackTime(readTable(file, of.columns, of.inference->getMissingCells()), tracking);
 }
 
 void TrackSession::commit() {
@@ -268,6 +309,13 @@ std::string TrackSession::makeHistory() const {
 
 std::string TrackSession::makePage() const {
   return makeTrackPage(parts_->identity.run, parts_->calcCourse(), parts_->twin->getNow(), parts_->view());
+}
+
+std::vector<double> TrackSession::listWindows(const fs::path& file, const MeasurementContext& context,
+                                              double length) const {
+  const Parts::TrialInference& trial = parts_->findTrial(context.trial);
+  return trial.reader.listWindows(readTable(file, trial.columns, trial.inference->getMissingCells()),
+                                  context.start, length);
 }
 
 std::vector<std::string> TrackSession::listCounted() const {

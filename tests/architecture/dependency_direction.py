@@ -76,7 +76,18 @@ ALLOWED = {
         "tracking",
     },
     "c_api": {"base", "data", "diagnosis", "estimation", "inference"},
-    "export": {"base", "experiment", "simulation", "models/fmu", "data", "estimation", "store", "inference", "kernels"},
+    "export": {
+        "base",
+        "experiment",
+        "simulation",
+        "models/fmu",
+        "data",
+        "estimation",
+        "store",
+        "inference",
+        "tracking",
+        "kernels",
+    },
     "cli": {
         "base",
         "experiment",
@@ -109,6 +120,7 @@ ALLOWED = {
         "study",
         "inference",
         "diagnosis",
+        "tracking",
     },
 }
 

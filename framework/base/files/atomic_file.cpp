@@ -140,13 +140,17 @@ void writeAtomically(const fs::path& path, const std::function<void(const fs::pa
   const fs::path temporary = getTemporaryPath(path);
   try {
     writeOrSayFull(temporary, write);
-    OpenFile(temporary, O_RDONLY | O_CLOEXEC).sync();
+    syncFile(temporary);
     renameFile(temporary, path);
   } catch (...) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
     throw;
   }
+}
+
+void syncFile(const fs::path& path) {
+  OpenFile(path, O_RDONLY | O_CLOEXEC).sync();
 }
 
 void writeBytes(const fs::path& path, const void* bytes, std::size_t size) {

@@ -26,6 +26,10 @@ void writeAtomically(const std::filesystem::path& path,
 void writeBytes(const std::filesystem::path& path, const void* bytes, std::size_t size);
 void writeTextFile(const std::filesystem::path& path, const std::string& text);
 
+/// Waits until what was written to a file is on the disk. Throws std::runtime_error naming the file and the
+/// cause.
+void syncFile(const std::filesystem::path& path);
+
 /// The whole file. Throws std::runtime_error naming the file and the cause.
 std::string readBytes(const std::filesystem::path& path);
 

@@ -143,8 +143,10 @@ struct TrackArguments : TwinArguments {
   std::vector<std::string> files;  ///< measurements, in any order within the lag
   std::string at;                  ///< time of the one measurement; "": by its table, else its number
   std::optional<double> start;     ///< as of infer
+  std::optional<double> windows;   ///< s, between windows of each file; none: one a file
+  std::string trial;               ///< that they record, of an experiment with trials
   std::string folder;              ///< whose files are tracked; "": none
-  bool follow = false;             ///< measurements from the standard input
+  bool follow = false;             ///< as they come, into the folder or else on the standard input
   std::string history, page;       ///< files for track.csv and the page; "": none
 };
 
@@ -199,6 +201,8 @@ struct ExportArguments {
   std::string prefix = "twinmap";  ///< of names in C
   bool compressed = false;         ///< fewer inducing inputs, for at most 2 % of an sd
   bool trust = true;               ///< judge measurements
+  bool track = false;              ///< a tracker beside, in C and the FMU
+  std::string tracking;            ///< of it: a file with a section `tracking:`; "": none
 };
 
 /// Of a robot's file with an estimate's numbers.

@@ -16,11 +16,11 @@ struct Invocation {
 /// check, simulate, run, plan, design.
 void addExperimentCommands(CLI::App& app, const Invocation& invocation);
 
-/// infer, track, replay, export, noise, look.
+/// infer, replay, export, noise, look.
 void addMapCommands(CLI::App& app, const Invocation& invocation);
 
-/// serve.
-void addLiveCommands(CLI::App& app);
+/// track, serve.
+void addTwinCommands(CLI::App& app);
 
 /// import, view.
 void addRobotCommands(CLI::App& app);

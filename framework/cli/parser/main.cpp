@@ -96,7 +96,7 @@ int runCommand(int count, char** arguments) {
   const cli::Invocation invocation{joinArguments(count, arguments), twinmap::countThreads()};
   cli::addExperimentCommands(app, invocation);
   cli::addMapCommands(app, invocation);
-  cli::addLiveCommands(app);
+  cli::addTwinCommands(app);
   cli::addRobotCommands(app);
   cli::addDiagnosisCommands(app);
   cli::addResultCommands(app, invocation);

@@ -91,50 +91,6 @@ void addInfer(CLI::App& app) {
   command->callback([arguments] { infer(*arguments); });
 }
 
-void addTrack(CLI::App& app) {
-  const auto arguments = std::make_shared<TrackArguments>();
-  CLI::App* command = app.add_subcommand("track", "Follow the parameters from one measurement to the next");
-  command->footer(
-      "Each measurement updates a belief that is kept in the state file, and prints a line of JSON: what "
-      "infer "
-      "says of it, and the belief behind it, with alarms where a parameter has changed. How parameters may "
-      "move is the section tracking of the experiment file; without it all walk at unknown rates.");
-  addArgument(*command, "RUN", arguments->run,
-              "Folder of a finished run, its maps.h5, or an experiment file");
-  command->add_option("MEASUREMENT", arguments->files, "Files, as infer takes them")->option_text(" ");
-  addOption(*command, "--state", "FILE", arguments->state,
-            "File of the belief: begun by the first measurement, replaced by each; the history is beside it")
-      ->required();
-  addOption(*command, "--tracking", "FILE", arguments->tracking,
-            "File with a section tracking (default: the experiment file)");
-  addOption(
-      *command, "--at", "TIME", arguments->at,
-      "Time of the measurement: a date and time, or seconds since 1970 (default: by tracking.time, else "
-      "its number)");
-  addOption(*command, "--start", "S", arguments->start,
-            "Time in each file (s) at which the model's time is 0");
-  command->add_flag("--follow", arguments->follow,
-                    "Read CSV measurements one after another from the standard input, each ended by an empty "
-                    "line");
-  addOption(*command, "--folder", "DIR", arguments->folder,
-            "Track the files of a folder that were not tracked yet, in the order of their names");
-  addOption(
-      *command, "--use", "STATUS", arguments->use,
-      "Let measurements of a status update that do not by themselves: model_mismatch, model_incomplete, "
-      "missing_term, unreliable, not_simulated");
-  addOption(*command, "--lag", "N", arguments->lag,
-            "How many measurements back a late one may belong (default: 100)")
-      ->check(CLI::Range(1, 10000));
-  addOption(*command, "--history", "FILE", arguments->history,
-            "File for all measurements so far (CSV): the belief then, and what all of them say of that time");
-  addOption(*command, "--page", "FILE", arguments->page,
-            "File for a page (HTML): the parameters over time, alarms, limits and forecast");
-  addKnown(*command, arguments->known);
-  addRefine(*command, arguments->refine);
-  addThreads(*command, arguments->threads);
-  command->callback([arguments] { track(*arguments); });
-}
-
 void addReplay(CLI::App& app, const Invocation& invocation) {
   const auto arguments = std::make_shared<ReplayArguments>();
   arguments->threads = invocation.threads;
@@ -215,6 +171,13 @@ void addExport(CLI::App& app) {
   command->add_flag_callback(
       "--no-trust", [arguments] { arguments->trust = false; }, "C without the trust status");
   addOption(*command, "--prefix", "NAME", arguments->prefix, "Of names and files in C (default: twinmap)");
+  CLI::Option* track = command->add_flag(
+      "--track", arguments->track,
+      "In C and the FMU also a tracker, which follows the parameters from one measurement to the next as "
+      "'twinmap track' does");
+  addOption(*command, "--tracking", "FILE", arguments->tracking,
+            "File with a section tracking for it (default: all parameters walk at unknown rates)")
+      ->needs(track);
   command->callback([arguments, robot] {
     robot->estimate = arguments->run;
     robot->robot.empty() ? exportMap(*arguments) : exportRobot(*robot);
@@ -262,7 +225,6 @@ void addLook(CLI::App& app) {
 
 void addMapCommands(CLI::App& app, const Invocation& invocation) {
   addInfer(app);
-  addTrack(app);
   addReplay(app, invocation);
   addExport(app);
   addNoise(app);

@@ -5,8 +5,7 @@
 
 namespace twinmap {
 
-std::optional<TrackingSpec> loadTracking(const std::string& path) {
-  const YamlNode root = loadYaml(path);
+std::optional<TrackingSpec> readTracking(const YamlNode& root) {
   const YamlNode* node = root.find(kTrackingKey);
   if (node == nullptr) {
     return {};
@@ -14,6 +13,10 @@ std::optional<TrackingSpec> loadTracking(const std::string& path) {
   TrackingSpec tracking;
   readValue(*node, tracking);
   return tracking;
+}
+
+std::optional<TrackingSpec> loadTracking(const std::string& path) {
+  return readTracking(loadYaml(path));
 }
 
 std::string writeTracking(const TrackingSpec& tracking) {

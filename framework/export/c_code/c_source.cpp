@@ -120,12 +120,8 @@ class Composer {
   const char* getReal() const { return options_.number == CNumber::kSingle ? "float" : "double"; }
 
   void finish() {
-    std::string sizes;
-    for (const CSize& size : source_.sizes) {
-      sizes += fmt::format("#define {}_{} {} /* {} */\n", toUpper(options_.prefix), size.name, size.value,
-                           size.meaning);
-    }
-    std::string header = fillSlot(rename("twinmap_map.h"), "@SIZES@", sizes);
+    std::string header =
+        fillSlot(rename("twinmap_map.h"), "@SIZES@", writeSizes(source_.sizes, options_.prefix));
     header = fillSlot(std::move(header), "@REAL@", getReal());
     source_.header = fillSlot(std::move(header), "@TITLE@", model_.experiment.name.text);
     source_.source = fmt::format(
@@ -146,6 +142,14 @@ class Composer {
 };
 
 }  // namespace
+
+std::string writeSizes(const CSizes& sizes, const std::string& prefix) {
+  std::string text;
+  for (const CSize& size : sizes) {
+    text += fmt::format("#define {}_{} {} /* {} */\n", toUpper(prefix), size.name, size.value, size.meaning);
+  }
+  return text;
+}
 
 std::string renameC(std::string text, const std::string& prefix) {
   return fillSlot(fillSlot(std::move(text), "twinmap_", prefix + "_"), "TWINMAP_", toUpper(prefix) + "_");

@@ -26,6 +26,9 @@ struct CSource {
 /// numbers are not finite.
 CSource makeCSource(const ExportedModel& model, const COptions& options);
 
+/// A macro each.
+std::string writeSizes(const CSizes& sizes, const std::string& prefix);
+
 /// A text of runtime/ with names of this prefix instead of twinmap_ and TWINMAP_.
 std::string renameC(std::string text, const std::string& prefix);
 

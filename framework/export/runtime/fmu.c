@@ -7,6 +7,53 @@ static const double input_starts[TWINMAP_SIGNALS + TWINMAP_KNOWN + 1] = {@INPUT_
 static const double mean_starts[TWINMAP_PARAMETERS] = {@MEAN_STARTS@};
 static const double sd_starts[TWINMAP_PARAMETERS] = {@SD_STARTS@};
 
+#if FMU_TRACKS
+static void begin_track(fmu_block *block)
+{
+  int i;
+  twinmap_track_begin(&block->track);
+  for (i = 0; i < TWINMAP_PARAMETERS; ++i) {
+    block->answer.mean[i] = block->result.mean[i];
+    block->answer.sd[i] = block->result.sd[i];
+    block->answer.lower[i] = block->result.lower[i];
+    block->answer.upper[i] = block->result.upper[i];
+  }
+}
+
+static double get_track(const fmu_block *block, int r)
+{
+  switch (r) {
+    case ALARM_STATISTIC:
+      return block->answer.alarm_statistic;
+    case ALARM_TIME:
+      return block->alarm.change_time;
+    case ALARM_SIZE:
+      return block->alarm.change_size;
+    case ALARM_SD:
+      return block->alarm.change_sd;
+    default:
+      break;
+  }
+  return r < FIRST_TRACK_SD      ? block->answer.mean[r - FIRST_TRACK_MEAN]
+         : r < FIRST_TRACK_LOWER ? block->answer.sd[r - FIRST_TRACK_SD]
+         : r < FIRST_TRACK_UPPER ? block->answer.lower[r - FIRST_TRACK_LOWER]
+                                 : block->answer.upper[r - FIRST_TRACK_UPPER];
+}
+
+/* By the inference of the window that ends at a time; one that goes back is left out. */
+static void update_track(fmu_block *block, double end)
+{
+  twinmap_track_answer answer;
+  if (twinmap_track_update(&block->track, &block->result, end, NULL, &answer) == TWINMAP_TRACK_OK) {
+    block->answer = answer;
+    if (answer.alarm != TWINMAP_TRACK_QUIET) {
+      block->alarm = answer;
+      ++block->alarms;
+    }
+  }
+}
+#endif
+
 /* Before the first inference nothing is known but the bounds. */
 void fmu_reset(fmu_block *block)
 {
@@ -23,6 +70,9 @@ void fmu_reset(fmu_block *block)
     block->result.upper[i] = mean_starts[i] + 1.959963984540054 * sd_starts[i];
   }
   block->result.status = TWINMAP_STATUS_NOT_JUDGED;
+#if FMU_TRACKS
+  begin_track(block);
+#endif
 }
 
 int fmu_get_real(const fmu_block *block, unsigned reference, double *value)
@@ -32,6 +82,12 @@ int fmu_get_real(const fmu_block *block, unsigned reference, double *value)
     *value = block->count > 0 ? block->times[block->count - 1] : 0.0;
     return 1;
   }
+#if FMU_TRACKS
+  if (r >= FIRST_TRACK_MEAN && r <= ALARM_SD) {
+    *value = get_track(block, r);
+    return 1;
+  }
+#endif
   if (r < 0 || r > P_VALUE || r == TRIGGER) {
     return 0;
   }
@@ -75,6 +131,14 @@ int fmu_get_integer(const fmu_block *block, unsigned reference, int *value)
     case MEASUREMENT_ERROR:
       *value = block->error;
       return 1;
+#if FMU_TRACKS
+    case ALARMS:
+      *value = block->alarms;
+      return 1;
+    case ALARM_PARAMETER: /* from 1; 0: none, or several at once */
+      *value = block->alarm.alarm == TWINMAP_TRACK_CHANGE ? block->alarm.parameter + 1 : 0;
+      return 1;
+#endif
     default:
       return 0;
   }
@@ -108,6 +172,9 @@ static void infer(fmu_block *block, double end)
   if (block->error == (int)TWINMAP_OK) {
     block->result = result;
     ++block->inferences;
+#if FMU_TRACKS
+    update_track(block, end);
+#endif
   }
 }
 

@@ -4,6 +4,11 @@
 
 #include "twinmap_map.h"
 
+#define FMU_TRACKS @TRACKS@ /* 1: each inference updates a belief over the parameters */
+#if FMU_TRACKS
+#include "twinmap_track.h"
+#endif
+
 enum {
   MOST_SAMPLES = 16384,
   FIRST_KNOWN = TWINMAP_SIGNALS,
@@ -18,6 +23,18 @@ enum {
   STATUSES,
   INFERENCES,
   MEASUREMENT_ERROR,
+#if FMU_TRACKS
+  FIRST_TRACK_MEAN,
+  FIRST_TRACK_SD = FIRST_TRACK_MEAN + TWINMAP_PARAMETERS,
+  FIRST_TRACK_LOWER = FIRST_TRACK_SD + TWINMAP_PARAMETERS,
+  FIRST_TRACK_UPPER = FIRST_TRACK_LOWER + TWINMAP_PARAMETERS,
+  ALARM_STATISTIC = FIRST_TRACK_UPPER + TWINMAP_PARAMETERS,
+  ALARM_TIME,
+  ALARM_SIZE,
+  ALARM_SD,
+  ALARMS,
+  ALARM_PARAMETER,
+#endif
   TIME
 };
 
@@ -29,6 +46,11 @@ typedef struct {
   twinmap_real samples[TWINMAP_SIGNALS][MOST_SAMPLES];
   double inputs[TWINMAP_SIGNALS + TWINMAP_KNOWN + 2];
   int count, trigger, trigger_before, timed, inferences, error;
+#if FMU_TRACKS
+  twinmap_track track;
+  twinmap_track_answer answer, alarm; /* the last, and the last that announced a change */
+  int alarms;
+#endif
 } fmu_block;
 
 void fmu_reset(fmu_block *block);

@@ -19,6 +19,7 @@ from ._experiment import Experiment, Responses, sweep
 from ._map import Estimate, Map, Posterior
 from ._recordings import Diagnosis, JointEstimate, infer_together
 from ._results import Results
+from ._track import Track
 from ._twinmap import Progress, Quantity
 from ._view import View
 
@@ -36,6 +37,7 @@ __all__ = [
     "Quantity",
     "Responses",
     "Results",
+    "Track",
     "View",
     "infer_together",
     "sweep",

@@ -1,6 +1,7 @@
 """Tables: pandas' DataFrames where pandas is, else a small one that has the same face for what this package does."""
 import csv
 import html
+import io
 import os
 from typing import TYPE_CHECKING, Any, Callable, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
 
@@ -117,15 +118,18 @@ def _read_column(cells: Sequence[str]) -> np.ndarray:
     return np.array(cells, dtype=object)
 
 
-def read_csv(path: Union[str, "os.PathLike[str]"], index: Optional[str] = None) -> DataFrame:
-    """A file with a header; index: the column that names the rows."""
+def read_csv(source: Union[str, "os.PathLike[str]", io.StringIO], index: Optional[str] = None) -> DataFrame:
+    """A file, or a text, with a header; index: the column that names the rows."""
     if DataFrame is not Table:
         import pandas
 
-        table = pandas.read_csv(path)
+        table = pandas.read_csv(source)
         return table.set_index(index) if index else table
-    with open(path, encoding="utf-8", newline="") as file:
-        header, *rows = list(csv.reader(file))
+    if isinstance(source, io.StringIO):
+        header, *rows = list(csv.reader(source))
+    else:
+        with open(source, encoding="utf-8", newline="") as file:
+            header, *rows = list(csv.reader(file))
     columns = {name: _read_column([row[i] for row in rows]) for i, name in enumerate(header)}
     names = list(columns.pop(index)) if index else None
     return make_frame(columns, names, index)

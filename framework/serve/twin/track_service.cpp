@@ -39,15 +39,12 @@ double parseAt(const std::string& text) {
   return seconds;
 }
 
-TrackService::TrackService(const InferenceSource& source, std::filesystem::path state, TrackOptions options)
+TrackService::TrackService(const TwinSource& source, std::filesystem::path state, TrackOptions options)
     : session_(source, std::move(state), std::move(options)) {}
 
 Json TrackService::answer(const PostedMeasurement& posted) {
-  if (!posted.trial.empty()) {
-    throw ExperimentError("trial: '" + posted.trial + "': recordings of trials are not tracked" +
-                          "\n  leave it out, or infer them together: twinmap infer --trial");
-  }
   MeasurementContext context;
+  context.trial = posted.trial;
   if (!posted.at.empty()) {
     context.at = parseAt(posted.at);
   }

@@ -12,7 +12,7 @@ namespace twinmap::serve {
 class TrackService final : public MeasurementService {
  public:
   /// The source must outlive it. Throws as TrackSession.
-  TrackService(const InferenceSource& source, std::filesystem::path state, TrackOptions options);
+  TrackService(const TwinSource& source, std::filesystem::path state, TrackOptions options);
 
   Json answer(const PostedMeasurement& posted) override;
   void commit() override;

@@ -175,18 +175,19 @@ class Exported(FolderTestCase):
             )
         self.assertLess(max(apart), stddevs)
 
-    def check_selftest(self, folder, *arguments):
+    def check_selftest(self, folder, *arguments, says="50 measurements, 0 differences"):
         subprocess.run(["make", "clean"], cwd=folder, capture_output=True, check=True)
         result = subprocess.run(["make", "test", *arguments], cwd=folder, capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        self.assertIn("50 measurements, 0 differences", result.stdout)
+        self.assertIn(says, result.stdout)
 
-    def check_on_aarch64(self, folder):
-        self.check_selftest(folder, "CC=aarch64-linux-gnu-gcc", "LDFLAGS=-static", "RUN=qemu-aarch64")
+    def check_on_aarch64(self, folder, **says):
+        self.check_selftest(folder, "CC=aarch64-linux-gnu-gcc", "LDFLAGS=-static", "RUN=qemu-aarch64", **says)
 
-    def check_on_cortex_m7(self, folder):
+    def check_on_cortex_m7(self, folder, selftest="selftest.c", parts=("map",), says="50 measurements, 0 differences"):
         machine = ["-O2", "-mcpu=cortex-m7", "-mthumb", "-mfpu=fpv5-d16", "-mfloat-abi=hard"]
-        compile_c(folder, ["twinmap_map.c"], "map.o", *machine, "-c", compiler="arm-none-eabi-gcc")
+        for part in parts:
+            compile_c(folder, [f"twinmap_{part}.c"], f"{part}.o", *machine, "-c", compiler="arm-none-eabi-gcc")
         subprocess.run(
             [
                 "arm-none-eabi-gcc",
@@ -195,8 +196,8 @@ class Exported(FolderTestCase):
                 "-T",
                 CORTEX_M7 / "mps2.ld",
                 CORTEX_M7 / "startup.c",
-                "selftest.c",
-                "map.o",
+                selftest,
+                *[f"{part}.o" for part in parts],
                 "-o",
                 "selftest.elf",
                 "-lm",
@@ -222,24 +223,25 @@ class Exported(FolderTestCase):
             timeout=600,
             stdin=subprocess.DEVNULL,
         )
-        self.assertIn("50 measurements, 0 differences", result.stdout)
+        self.assertIn(says, result.stdout)
         self.assertEqual(result.returncode, 0)
 
-    def check_memory(self, folder):
+    def check_memory(self, folder, part="map", state="state", stack="stack"):
         """No heap; stack and state as the README says."""
-        compile_c(folder, ["twinmap_map.c"], "map.o", "-O2", "-c", "-fstack-usage")
-        symbols = subprocess.run(["nm", "-u", "map.o"], cwd=folder, capture_output=True, text=True).stdout.split()
+        compile_c(folder, [f"twinmap_{part}.c"], f"{part}.o", "-O2", "-c", "-fstack-usage")
+        symbols = subprocess.run(["nm", "-u", f"{part}.o"], cwd=folder, capture_output=True, text=True).stdout.split()
         self.assertFalse({"malloc", "calloc", "realloc", "free"} & set(symbols), symbols)
-        frames = sum(int(line.split("\t")[1]) for path in folder.glob("*.su") for line in path.read_text().splitlines())
+        (usage,) = folder.glob(f"*{part}.su")
+        frames = sum(int(line.split("\t")[1]) for line in usage.read_text().splitlines())
         readme = (folder / "README.md").read_text()
-        self.assertLess(frames, int(re.search(r"stack, at most \| (\d+)", readme).group(1)))
+        self.assertLess(frames, int(re.search(rf"{stack}, at most \| (\d+)", readme).group(1)))
         (folder / "size.c").write_text(
-            '#include <stdio.h>\n#include "twinmap_map.h"\n'
-            'int main(void) { printf("%lu", (unsigned long)sizeof(twinmap_state)); return 0; }'
+            f'#include <stdio.h>\n#include "twinmap_{part}.h"\n'
+            f'int main(void) {{ printf("%lu", (unsigned long)sizeof(twinmap_{state})); return 0; }}'
         )
         compile_c(folder, ["size.c"], "size")
         size = subprocess.run([folder / "size"], capture_output=True, text=True).stdout
-        self.assertEqual(size, re.search(r"RAM\) \| (\d+)", readme).group(1))
+        self.assertEqual(size, re.search(rf"twinmap_{state}` \(RAM\) \| (\d+)", readme).group(1))
 
 
 TWO_BEAM = {"y": 5e-5, "theta": 0.015}

@@ -96,7 +96,7 @@ class ServeTest(unittest.TestCase):
                 self.assertIn(says, problem["detail"])
             with self.assertRaises(urllib.error.HTTPError) as caught:
                 server.post(self.files[0], "?trial=fast")
-            self.assertIn("not tracked", json.loads(caught.exception.read())["detail"])
+            self.assertIn("no trials", json.loads(caught.exception.read())["detail"])
             self.assertEqual(json.loads(server.ask("/state"))["measurements"], 0)
 
     @unittest.skipUnless(shutil.which("promtool"), "prometheus is not installed")

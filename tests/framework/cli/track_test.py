@@ -1,10 +1,11 @@
 """One twin over time: twinmap track."""
 import json
 import shutil
+import signal
 import subprocess
 import unittest
 
-from support import EXPERIMENTS, TWINMAP, FolderTestCase, call, read_csv
+from support import EXPERIMENTS, TWINMAP, WEIGHED_MACHINE, FolderTestCase, call, read_csv
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 TRACKING = """
@@ -12,6 +13,34 @@ tracking:
   drift: {k: {random_walk: {stddev: 0.02, over: 1}}}
   limits: {k: {min: 85}}
 """
+TRIALS = (
+    WEIGHED_MACHINE
+    + """\
+trials:
+  free:
+    initial: {coordinates: {x: x0}}
+    nuisance: {x0: {bounds: [0.04, 0.06], unit: m}}
+  step:
+    excitation: {F: {unit: N, pulses: [{amplitude: 4, start: 0, end: 9}]}}
+    simulation: {duration: 3}
+    features: [{samples: {outputs: [x], start: 0.1, interval: 0.1, count: 29}}]
+"""
+)
+SWING = """
+name: swing
+parameters: {k: {bounds: [80, 120], unit: N/m}}
+nuisance: {x0: {bounds: [-0.1, 0.1], unit: m}, v0: {bounds: [-1, 1], unit: m/s}}
+system:
+  bodies: {cart: {mass: 1.2, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: 0.5}]
+initial: {coordinates: {x: x0}, speeds: {x: v0}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: 1}
+features: [{samples: {outputs: [x], start: 0.02, interval: 0.02, count: 49}}]
+noise: {stddev: {x: 1e-4}}
+"""
+TRUTH = ["parameters.k=95", "parameters.m=1.2"]
 
 
 class Track(FolderTestCase):
@@ -60,13 +89,55 @@ class Track(FolderTestCase):
         again = json.loads(self.track("f.h5", self.files[0]).stdout)["track"]
         self.assertEqual((again["counted"], again["at"], again["measurements"]), (False, 1, 2))
 
+    def test_what_was_counted_is_answered_without_inferring_it_again(self):
+        first = json.loads(self.track("h.h5", self.files[0]).stdout)
+        again = json.loads(self.track("h.h5", self.files[0]).stdout)
+        self.assertEqual((again["source"], again["status"]), (first["source"], first["status"]))
+        self.assertNotIn("parameters", again)  # of the measurement: it was not simulated
+        self.assertEqual(again["track"]["parameters"], first["track"]["parameters"])
+
     def test_a_folder_is_tracked_once(self):
         inbox = self.folder / "inbox"
         inbox.mkdir()
         shutil.copy(self.files[0], inbox)
+        shutil.copy(self.tracking, inbox / "notes.md")
         self.assertEqual(len(self.track("c.h5", "--folder", inbox).stdout.splitlines()), 1)
         shutil.copy(self.files[1], inbox)
         self.assertEqual(len(self.track("c.h5", "--folder", inbox).stdout.splitlines()), 1)
+
+    def test_a_folder_is_followed_in_the_order_of_times_until_a_signal(self):
+        timed = self.folder / "timed.yaml"
+        timed.write_text(
+            TRACKING.replace("tracking:", "tracking:\n  time: {column: date}").replace("over: 1", "over: 1 d")
+        )
+        inbox = self.folder / "dated"
+        inbox.mkdir()
+
+        def put(name, day):
+            header, *rows = self.files[0].read_text().splitlines()
+            rows = [f"{row},2026-11-{day}T10:00:00Z" for row in rows]
+            (inbox / name).write_text("\n".join([header + ",date", *rows]) + "\n")
+
+        put("a.csv", 27)
+        put("b.csv", 26)
+        (inbox / "c.csv").write_text("t\n")
+        follow = [TWINMAP, "track", CART, "--folder", inbox, "--follow", "--state", self.folder / "i.h5"]
+        with subprocess.Popen(
+            [*follow, "--tracking", timed], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as process:
+            answers = [json.loads(process.stdout.readline()) for _ in range(3)]
+            put("d.csv", 28)
+            answers.append(json.loads(process.stdout.readline()))
+            process.send_signal(signal.SIGTERM)
+            self.assertEqual(process.stdout.read(), "")
+            said = process.stderr.read()
+        names = [answer["source"].rsplit("/")[-1] for answer in answers]
+        self.assertEqual(sorted(names[:3]), ["a.csv", "b.csv", "c.csv"])
+        self.assertLess(names.index("b.csv"), names.index("a.csv"))
+        self.assertEqual(names[3], "d.csv")
+        self.assertEqual(answers[names.index("c.csv")]["status"], "error")
+        self.assertEqual(answers[3]["track"]["measurements"], 3)
+        self.assertIn("1 of 4 measurements could not be used", said)
 
     def test_one_process_at_a_time_and_no_answer_is_lost_where_it_is_killed(self):
         follow = [TWINMAP, "track", CART, "--follow", "--state", self.folder / "g.h5", "--tracking", self.tracking]
@@ -100,6 +171,66 @@ class Track(FolderTestCase):
         self.assertIn("wrong.yaml:4", result.stderr)
         self.assertIn("outside the bounds of 'k'", result.stderr)
         self.assertFalse((self.folder / "e.h5").exists())
+
+
+class TrackWindows(FolderTestCase):
+    """Windows of one recording of a swing that dies away."""
+
+    def test_windows_are_measurements_of_their_own(self):
+        file, recording, state = (self.folder / name for name in ("swing.yaml", "swing.csv", "a.h5"))
+        file.write_text(SWING)
+        values = ["parameters.k=95", "nuisance.x0=0.08", "nuisance.v0=0"]
+        longer = ["simulation.duration=4", "features[0].samples.count=199"]
+        result = call("simulate", file, "--noise", "--csv", recording, *values, *longer)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for counted in (True, False):  # the second time nothing is new
+            result = call("track", file, recording, "--windows", "1", "--state", state)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            answers = [json.loads(line)["track"] for line in result.stdout.splitlines()]
+            self.assertEqual([answer["at"] for answer in answers], [0, 1, 2, 3])
+            self.assertEqual([answer["counted"] for answer in answers], [counted] * 4)
+        self.assertLess(abs(answers[3]["parameters"]["k"]["mean"] - 95), 5 * answers[3]["parameters"]["k"]["sd"])
+        records = [json.loads(line) for line in state.with_suffix(".jsonl").read_text().splitlines()]
+        amplitudes = [dict(record["covariates"])["the amplitude of x"] for record in records]
+        self.assertEqual(amplitudes, sorted(amplitudes, reverse=True))  # of each window, not of the recording
+        self.assertLess(amplitudes[3], amplitudes[0] - 0.3)
+        result = call("track", file, "--folder", self.folder, "--windows", "1", "--state", state)
+        self.assertIn("--windows is of files", result.stderr)
+
+
+class TrackTrials(FolderTestCase):
+    """Recordings of two experiments with one machine, one after another."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.file = cls.folder / "weighed.yaml"
+        cls.file.write_text(TRIALS)
+        for trial in ("free", "step"):
+            recording = cls.folder / f"{trial}.csv"
+            result = call("simulate", cls.file, f"trial={trial}", "--noise", "--csv", recording, *TRUTH)
+            assert result.returncode == 0, result.stderr
+
+    def track(self, state, *arguments):
+        return call("track", self.file, "--state", self.folder / state, *arguments)
+
+    def test_each_trial_says_its_own_of_the_machine(self):
+        beliefs = []
+        for trial in ("free", "step"):
+            result = self.track("a.h5", self.folder / f"{trial}.csv", "--trial", trial)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            beliefs.append(json.loads(result.stdout)["track"]["parameters"])
+        for name, truth in (("k", 95), ("m", 1.2)):
+            self.assertLess(abs(beliefs[1][name]["mean"] - truth), 5 * beliefs[1][name]["sd"])
+            self.assertLess(beliefs[1][name]["sd"], 0.7 * beliefs[0][name]["sd"])  # a release alone says k / m
+
+    def test_a_trial_is_to_be_named(self):
+        for arguments, says in (([], "one of the trials free, step"), (["--trial", "fre"], "free")):
+            result = self.track("b.h5", self.folder / "free.csv", *arguments)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertIn(says, result.stderr)
+        result = call("track", CART, self.folder / "free.csv", "--trial", "x", "--state", self.folder / "b.h5")
+        self.assertIn("has no trials", result.stderr)
 
 
 if __name__ == "__main__":

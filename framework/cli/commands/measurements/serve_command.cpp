@@ -7,7 +7,6 @@
 #include "framework/base/text/source_location.hpp"
 #include "framework/cli/commands/measurements/track_options.hpp"
 #include "framework/cli/signals.hpp"
-#include "framework/inference/measurement/inference_source.hpp"
 #include "framework/serve/live/twin_server.hpp"
 #include "framework/serve/twin/mqtt_source.hpp"
 #include "framework/serve/twin/track_service.hpp"
@@ -48,7 +47,7 @@ void serve(const ServeArguments& arguments) {
   setThreads(arguments.threads);
   serve::ListenAddress address = serve::parseListenAddress(arguments.listen);
   const serve::Access access = makeAccess(arguments, address);
-  const InferenceSource source(arguments.run);
+  const TwinSource source(arguments.run);
   serve::TrackService service(source, arguments.state, makeTrackOptions(arguments));
   serve::TwinServer server(service, address, serve::HttpLimits{}, access, kVersion);
   address.port = server.getPort();

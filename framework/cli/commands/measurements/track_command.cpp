@@ -1,14 +1,18 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/base/files/digest.hpp"
+#include "framework/base/files/settled_files.hpp"
 #include "framework/base/json/json.hpp"
 #include "framework/cli/commands/measurements/track_options.hpp"
+#include "framework/cli/signals.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/data/measurement/files/time_stamp.hpp"
 #include "framework/inference/measurement/measurement_stream.hpp"
@@ -38,25 +42,30 @@ class TrackCommand {
   explicit TrackCommand(const TrackArguments& arguments)
       : source_(arguments.run),
         session_(source_, arguments.state, makeTrackOptions(arguments)),
-        context_{readTime(arguments.at), arguments.start} {}
+        context_{readTime(arguments.at), arguments.start, arguments.trial},
+        windows_(arguments.windows) {}
 
   void trackFile(const fs::path& file) {
-    track(file.string(), [&] { return session_.updateFile(file, context_); });
+    if (windows_) {
+      trackWindows(file);
+    } else {
+      track(file.string(), [&] { return session_.updateFile(file, context_); });
+    }
   }
 
-  /// The files of a folder that were not tracked yet, in the order of their names.
-  void trackFolder(const fs::path& folder) {
-    std::set<fs::path> files;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      if (entry.is_regular_file()) {
-        files.insert(entry.path());
-      }
-    }
+  /// What of a folder was not tracked yet; follow: and what comes into it, until a signal.
+  void trackFolder(const fs::path& folder, bool follow) {
+    constexpr std::chrono::milliseconds kLook{200};  // a fifth of what a file takes to be seen as complete
+    const StopFlags signals = catchSignals();
     const std::vector<std::string> list = session_.listCounted();
-    const std::set<std::string> counted(list.begin(), list.end());
-    for (const fs::path& file : files) {
-      if (counted.count(toHex(calcFileDigest(file))) == 0) {
-        trackFile(file);
+    counted_.insert(list.begin(), list.end());
+    SettledFiles files(folder, {".csv", ".txt", ".tsv", ".dat", ".mat"});
+    for (bool is_done = false; !is_done && !signals.stop;) {
+      trackInOrder(files.take(SettledFiles::Clock::now()), signals);
+      is_done = !follow && !files.areSettling();
+      if (!is_done) {
+        catchSignals();  // again: what is inferred has let go of them
+        std::this_thread::sleep_for(kLook);
       }
     }
   }
@@ -67,7 +76,6 @@ class TrackCommand {
     for (int i = 1; measurements.next(text); ++i) {
       const std::string name = "measurement " + std::to_string(i);
       track(name, [&] { return session_.update(text, name, context_); });
-      std::cout.flush();
     }
   }
 
@@ -87,36 +95,92 @@ class TrackCommand {
   }
 
  private:
+  /// In the order of times, of equal ones that of names. What states no time that can be read is tracked
+  /// as it comes, which says what is wrong with it.
+  void trackInOrder(const std::vector<fs::path>& files, const StopFlags& signals) {
+    std::vector<std::pair<double, fs::path>> timed;
+    for (const fs::path& file : files) {
+      timed.emplace_back(readTimeOf(file), file);
+    }
+    std::sort(timed.begin(), timed.end());
+    for (const auto& [time, file] : timed) {
+      if (signals.stop) {
+        return;
+      }
+      if (counted_.insert(toHex(calcFileDigest(file))).second) {
+        trackFile(file);
+      }
+    }
+  }
+
+  void trackWindows(const fs::path& file) {
+    double begin = 0.0;
+    std::vector<double> starts;
+    const bool is_read = attempt(file.string(), [&] {
+      begin = session_.readTime(file, context_.trial).value_or(0.0);
+      starts = session_.listWindows(file, context_, *windows_);
+    });
+    count_ += is_read ? 0 : 1;
+    for (const double start : starts) {
+      const MeasurementContext window{begin + start, start, context_.trial};
+      track(file.string(), [&] { return session_.updateFile(file, window); });
+    }
+  }
+
+  double readTimeOf(const fs::path& file) const {
+    try {
+      return session_.readTime(file, context_.trial).value_or(0.0);
+    } catch (const std::exception&) {
+      return 0.0;
+    }
+  }
+
   template <class Update>
   void track(const std::string& name, const Update& update) {
     ++count_;
-    try {
+    attempt(name, [&] {
       WaitingLine waiting("track " + name);
       const Json answer = update();
       session_.commit();
       waiting.clear();
       std::cout << formatJson(answer) << '\n';
+      std::cout.flush();
+    });
+  }
+
+  /// False, and an error that is printed, where it throws.
+  template <class Action>
+  bool attempt(const std::string& name, const Action& action) {
+    try {
+      action();
+      return true;
     } catch (const std::exception& error) {
       ++errors_;
       std::cout << makeErrorJson(name, context_.start.value_or(0.0), error.what()) << '\n';
       std::cout.flush();
       std::cerr << "twinmap: error: " << error.what() << "\n";
+      return false;
     }
   }
 
-  const InferenceSource source_;
+  const TwinSource source_;
   TrackSession session_;
   const MeasurementContext context_;
+  const std::optional<double> windows_;  // s
+  std::set<std::string> counted_;        // digests, of a folder's files
   int count_ = 0, errors_ = 0;
 };
 
 void requireOneSource(const TrackArguments& arguments) {
-  const int given =
-      (arguments.files.empty() ? 0 : 1) + (arguments.follow ? 1 : 0) + (arguments.folder.empty() ? 0 : 1);
-  if (given > 1) {
+  const bool comes = arguments.follow || !arguments.folder.empty();
+  if (!arguments.files.empty() && comes) {
     throw ExperimentError("measurements come from files, --follow or --folder: give one of them");
   }
-  if (!arguments.at.empty() && (arguments.files.size() != 1 || given != 1)) {
+  if (arguments.windows && (arguments.files.empty() || !arguments.at.empty())) {
+    throw ExperimentError(
+        "--windows is of files, which state its times: leave --folder, --follow and --at out");
+  }
+  if (!arguments.at.empty() && arguments.files.size() != 1) {
     throw ExperimentError("--at is of one measurement: give one file, or a column of times (tracking.time)");
   }
 }
@@ -127,10 +191,10 @@ void track(const TrackArguments& arguments) {
   requireOneSource(arguments);
   setThreads(arguments.threads);
   TrackCommand command(arguments);
-  if (arguments.follow) {
+  if (!arguments.folder.empty()) {
+    command.trackFolder(arguments.folder, arguments.follow);
+  } else if (arguments.follow) {
     command.trackStream(std::cin);
-  } else if (!arguments.folder.empty()) {
-    command.trackFolder(arguments.folder);
   }
   for (const std::string& file : arguments.files) {
     command.trackFile(file);

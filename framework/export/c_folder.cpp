@@ -1,4 +1,4 @@
-#include "framework/export/c_code/c_folder.hpp"
+#include "framework/export/c_folder.hpp"
 
 #include <fmt/core.h>
 
@@ -12,6 +12,8 @@
 #include "framework/export/c_code/runtime_sources.hpp"
 #include "framework/export/c_code/selftest.hpp"
 #include "framework/export/model/compress_map.hpp"
+#include "framework/export/tracking/track_readme.hpp"
+#include "framework/export/tracking/track_selftest.hpp"
 #include "framework/inference/inferrer.hpp"
 #include "kernels/gp/online/process_view.hpp"
 
@@ -270,6 +272,18 @@ std::string adviseOnSize(const CSource& source, const CFolderOptions& options) {
              : "  More than a controller holds: --compress, --no-trust, or a network (inverse_map=network)\n";
 }
 
+/// What of it README.md says.
+std::string writeTracker(const std::filesystem::path& folder, const CFolderOptions& options,
+                         const ExportedModel& model, const std::vector<TestedMeasurement>& measurements) {
+  const std::string& prefix = options.c.prefix;
+  const ExportedTracking tracking = makeExportedTracking(options.tracking, model.experiment.model);
+  const CTrackSource source = makeTrackSource(model, tracking, prefix);
+  writeTextFile(folder / (prefix + "_track.h"), source.header);
+  writeTextFile(folder / (prefix + "_track.c"), source.source);
+  writeTextFile(folder / "track_selftest.c", makeTrackSelftest(model, tracking, prefix, measurements));
+  return makeTrackReadme(model, tracking, prefix, source);
+}
+
 }  // namespace
 
 void writeCFolder(const std::filesystem::path& run, const std::filesystem::path& folder,
@@ -287,8 +301,9 @@ void writeCFolder(const std::filesystem::path& run, const std::filesystem::path&
   writeTextFile(folder / (stem + ".c"), source.source);
   writeTextFile(folder / "selftest.c", makeSelftest(model, options.c, measurements));
   writeTextFile(folder / "Makefile", renameC(std::string(getRuntimeSource("Makefile")), options.c.prefix));
+  const std::string tracker = options.track ? writeTracker(folder, options, model, measurements) : "";
   writeTextFile(folder / "README.md",
-                makeCReadme(model, options.c, source) + (loss.empty() ? "" : "\n" + loss));
+                makeCReadme(model, options.c, source) + (loss.empty() ? "" : "\n" + loss) + tracker);
   log << fmt::format(
       "{}: {:.1f} kB of C: {:.1f} kB of constants for the map, {:.1f} kB for the trust status\n{}{}",
       (folder / (stem + ".c")).string(), kilo(source.source.size()), kilo(source.map_bytes),
