@@ -104,8 +104,8 @@ class Track:
 
     @property
     def parameters(self) -> DataFrame:
-        """The belief now, a row for each parameter: unit, mean, stddev, lower, upper (of 95 %); and how far it walks from one
-        measurement to the next: walk, a standard deviation."""
+        """The belief now, a row for each parameter: unit, mean, stddev, lower, upper (of 95 %), walk. That is how far it
+        walks from one measurement to the next, a standard deviation."""
         found = self.state["parameters"]
         rows = [
             {
@@ -128,7 +128,7 @@ class Track:
     @property
     def alarms(self) -> DataFrame:
         """The last changes that were announced, a row each: announced, parameter (None: several at once), time, size, stddev,
-        unit, probability, and rivals: what else explains the parameter's course as well."""
+        unit, probability, rivals. These are what else explains the parameter's course as well."""
         rows = [
             {
                 "announced": one["announced"],
@@ -147,8 +147,8 @@ class Track:
 
     @property
     def forecast(self) -> DataFrame:
-        """When each limit (`tracking.limits`) is crossed, a row each: parameter, side ("min", "max"), limit, and the time's
-        median, lower and upper (of 95 %); None is never."""
+        """When each limit (`tracking.limits`) is crossed, a row each: parameter, side ("min", "max"), limit, and of the time
+        median, lower and upper (95 %). None is never."""
         rows = [
             {
                 "parameter": one["parameter"],
@@ -163,9 +163,10 @@ class Track:
         return make_frame_of_rows(rows, ["parameter", "side", "limit", "median", "lower", "upper"])
 
     def history(self) -> DataFrame:
-        """All measurements so far, a row for each and each parameter, in the order of their times: time, source, status, used,
-        parameter, unit, what was believed then (mean, sd, lower, upper), and what all of them say of that time
-        (smoothed_mean, smoothed_sd, smoothed_lower, smoothed_upper)."""
+        """All measurements so far, a row for each and each parameter, in the order of their times.
+
+        Columns: time, source, status, used, parameter, unit. What was believed then: mean, sd, lower, upper. What all of
+        them say of that time: smoothed_mean, smoothed_sd, smoothed_lower, smoothed_upper."""
         return read_csv(io.StringIO(self._track.make_history()))
 
     def write_page(self, path: PathLike) -> None:
