@@ -1,5 +1,6 @@
 """The type hints of the package: complete, right about the module, and right about the code (mypy)."""
 import inspect
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -60,6 +61,8 @@ class Typing(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="twinmap_test_") as folder:
             user = Path(folder) / "user.py"
             user.write_text(USER)
+            package = Path(folder) / "twinmap"  # mypy takes none from where packages are installed
+            shutil.copytree(PACKAGE, package, ignore=lambda _, names: [n for n in names if ".py" not in n])
             result = subprocess.run(
                 [
                     sys.executable,
@@ -71,12 +74,12 @@ class Typing(unittest.TestCase):
                     "--cache-dir",
                     folder,
                     user,
-                    *PACKAGE.glob("*.py"),
+                    *package.glob("*.py"),
                 ],
                 capture_output=True,
                 text=True,
                 cwd=folder,
-                env={"MYPYPATH": str(PACKAGE.parent), "PATH": "/usr/bin"},
+                env={"MYPYPATH": folder, "PATH": "/usr/bin"},
             )
         if "No module named mypy" in result.stderr:
             self.skipTest("mypy is not here")
