@@ -111,7 +111,7 @@ std::vector<ArchiveFile> compile(const std::string& fmu, const std::filesystem::
           library)) {
     return {};
   }
-  const std::string& platform = fmi::listOwnPlatforms()[version == 2 ? 1 : 0];
+  const std::string platform = fmi::listOwnPlatforms()[version == 2 ? 1 : 0];
   return {{fmt::format("binaries/{}/{}.so", platform, identity.identifier), readBytes(library)}};
 }
 
