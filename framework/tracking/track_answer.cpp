@@ -8,32 +8,13 @@
 
 #include "framework/base/json/json.hpp"
 #include "framework/estimation/interval_factor.hpp"
-#include "kernels/tracking/crossing.hpp"
+#include "kernels/tracking/outlook.hpp"
 
 namespace twinmap {
 namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-
-/// Of the state: the place of a parameter's slope; none: -1.
-Index findSlope(const tracking::Model& model, Index parameter) {
-  if (!model.drifts[static_cast<std::size_t>(parameter)].has_slope) {
-    return -1;
-  }
-  Index place = model.countParameters();
-  for (Index j = 0; j < parameter; ++j) {
-    place += model.drifts[static_cast<std::size_t>(j)].has_slope ? 1 : 0;
-  }
-  return place;
-}
-
-const tracking::RateFilters* findFilters(const tracking::TrackerState& state, Index parameter) {
-  const auto found =
-      std::find_if(state.filters.begin(), state.filters.end(),
-                   [&](const tracking::RateFilters& one) { return one.parameter == parameter; });
-  return found == state.filters.end() ? nullptr : &*found;
-}
 
 /// How far the parameter walks in an interval (unit: what its coordinate of 1 is in its unit).
 Json makeWalk(const tracking::Tracker& tracker, Index parameter, double unit) {
@@ -105,24 +86,16 @@ Json makeTime(double now, double later) {
   return std::isfinite(later) ? Json(now + later) : Json();
 }
 
-Json makeForecast(const TrackPoint& point, const tracking::Belief& belief, const TrackView& view) {
+Json makeForecast(const TrackPoint& point, const TrackView& view) {
   constexpr double kIntervals = 1000.0;  // farther than any rate is known
   Json list = Json::array();
   const tracking::TrackerState& state = point.tracker.getState();
-  const VectorXd rates = point.tracker.calcRates();
   for (const LimitSpec& limits : view.tracking->limits) {
     const auto named =
         std::find_if(view.parameters.begin(), view.parameters.end(),
                      [&](const ParameterSpec& one) { return one.name.text == limits.name.text; });
     const Index j = named - view.parameters.begin();
-    tracking::Outlook outlook{belief.mean[j], std::sqrt(belief.covariance(j, j)), 0.0, 0.0, rates[j], 0.0};
-    if (const Index slope = findSlope(point.tracker.getModel(), j); slope >= 0) {
-      outlook.slope = belief.mean[slope];
-      outlook.slope_stddev = std::sqrt(belief.covariance(slope, slope));
-    }
-    if (const tracking::RateFilters* filters = findFilters(state, j)) {
-      outlook.rate_log_stddev = 2.0 * estimateRate(calcRatePosterior(*filters)).log_stddev;
-    }
+    const tracking::Outlook outlook = calcOutlook(point.tracker, j);
     for (const bool is_min : {true, false}) {
       const std::optional<double>& limit = is_min ? limits.min : limits.max;
       if (!limit || !(state.interval > 0.0)) {
@@ -161,7 +134,7 @@ Json makeTrackState(const TrackPoint& point, const TrackView& view) {
     json["follows"] = makeFollows(point, belief, view);
   }
   if (view.tracking != nullptr && !view.tracking->limits.empty()) {
-    json["forecast"] = makeForecast(point, belief, view);
+    json["forecast"] = makeForecast(point, view);
   }
   return json;
 }

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr const char* kVersion = "twinmap track 1";
+constexpr const char* kVersion = "twinmap track 2";
 
 std::vector<double> toList(const VectorXd& values) {
   return {values.begin(), values.end()};

@@ -8,6 +8,7 @@
 #include "framework/experiment/model/model_spec.hpp"
 #include "framework/tracking/track_record.hpp"
 #include "framework/tracking/track_space.hpp"
+#include "kernels/tracking/whole_course.hpp"
 
 namespace twinmap {
 
@@ -34,13 +35,11 @@ class TrackHistory {
 
 /// What is known of each parameter at each measurement, in coordinates: by those until then, and by all.
 struct TrackCourse {
-  std::vector<TrackRecord> records;            ///< N
-  std::vector<bool> used;                      ///< N
-  Eigen::MatrixXd filtered, filtered_stddevs;  ///< p x N
-  Eigen::MatrixXd smoothed, smoothed_stddevs;  ///< p x N
+  std::vector<TrackRecord> records;  ///< N, in their order
+  tracking::WholeCourse whole;
 };
 
-/// Runs through all records (in order); smoothed values integrate over unknown rates as filtered ones do.
+/// Of all records (in order).
 TrackCourse calcTrackCourse(std::vector<TrackRecord> records, const tracking::Model& model);
 
 /// CSV: time, source, status, used, parameter, unit, mean, sd, lower, upper, smoothed_mean, smoothed_sd,

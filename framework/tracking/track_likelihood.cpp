@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/tracking/modes.hpp"
 
 namespace twinmap {
 namespace {
@@ -12,9 +13,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using tracking::Belief;
 
-NormalBelief toSpace(const VectorXd& mean, const MatrixXd& covariance, const TrackSpace& space) {
-  NormalBelief belief{VectorXd(space.count()), {}};
+Belief toSpace(const VectorXd& mean, const MatrixXd& covariance, const TrackSpace& space) {
+  Belief belief{VectorXd(space.count()), {}};
   VectorXd slopes(space.count());
   for (Index j = 0; j < space.count(); ++j) {
     belief.mean[j] = space.toCoordinate(j, mean[j]);
@@ -24,79 +26,107 @@ NormalBelief toSpace(const VectorXd& mean, const MatrixXd& covariance, const Tra
   return belief;
 }
 
-/// log density of one belief's mean under both, but for a constant.
-double calcLogOverlap(const NormalBelief& one, const NormalBelief& other) {
-  const linalg::Cholesky factor = linalg::calcCholesky(one.covariance + other.covariance);
-  const VectorXd off = linalg::solveLower(factor.lower, one.mean - other.mean);
-  return -0.5 * off.squaredNorm() - factor.lower.diagonal().array().log().sum();
+/// Normal distributions, and the share of each.
+struct Parts {
+  std::vector<Belief> beliefs;
+  VectorXd weights;
+};
+
+Parts listParts(const Mixture& mixture, const TrackSpace& space) {
+  Parts parts{{}, mixture.weights / mixture.weights.sum()};
+  const Index p = space.count();
+  for (Index c = 0; c < mixture.countComponents(); ++c) {
+    const VectorXd stddev = mixture.stddevs.col(c).head(p);
+    const MatrixXd covariance = stddev.asDiagonal() *
+                                mixture.correlations[static_cast<std::size_t>(c)].topLeftCorner(p, p) *
+                                stddev.asDiagonal();
+    parts.beliefs.push_back(toSpace(mixture.means.col(c).head(p), covariance, space));
+  }
+  return parts;
 }
 
-NormalBelief chooseMode(const Estimate& estimate, const TrackSpace& space, const NormalBelief& believed) {
-  const Mixture& mixture = estimate.mixture;
-  NormalBelief chosen;
-  double best = -std::numeric_limits<double>::infinity();
-  for (Index c = 0; c < mixture.countComponents(); ++c) {
-    const VectorXd stddev = mixture.stddevs.col(c);
-    const MatrixXd covariance =
-        stddev.asDiagonal() * mixture.correlations[static_cast<std::size_t>(c)] * stddev.asDiagonal();
-    NormalBelief mode = toSpace(mixture.means.col(c), covariance, space);
-    const double overlap = std::log(mixture.weights[c]) + calcLogOverlap(mode, believed);
-    if (overlap > best) {
-      best = overlap;
-      chosen = std::move(mode);
+/// Draws in the coordinates (p x n), and mean and covariance of some of them.
+MatrixXd toSpace(const BoundedDraws& draws, const TrackSpace& space) {
+  MatrixXd points(space.count(), draws.points.cols());
+  for (Index i = 0; i < points.cols(); ++i) {
+    for (Index j = 0; j < points.rows(); ++j) {
+      points(j, i) = space.toCoordinate(j, draws.points(j, i));
     }
   }
-  return chosen;
+  return points;
 }
 
-NormalBelief describe(const Estimate& estimate, const TrackSpace& space, const NormalBelief& believed) {
-  return estimate.isMultimodal() && estimate.mixture.isGiven()
-             ? chooseMode(estimate, space, believed)
-             : toSpace(estimate.mean, estimate.calcCovariance(), space);
+Belief describe(const MatrixXd& points, const VectorXd& weights, const std::vector<Index>& chosen) {
+  Belief belief{VectorXd::Zero(points.rows()), MatrixXd::Zero(points.rows(), points.rows())};
+  double total = 0.0;
+  for (const Index i : chosen) {
+    belief.mean += weights[i] * points.col(i);
+    total += weights[i];
+  }
+  belief.mean /= total;
+  for (const Index i : chosen) {
+    const VectorXd off = points.col(i) - belief.mean;
+    belief.covariance += weights[i] / total * off * off.transpose();
+  }
+  return belief;
+}
+
+double calcAcross(const Belief& belief, const VectorXd& direction) {
+  return belief.covariance.trace() - direction.dot(belief.covariance * direction);
+}
+
+/// Draws that bend, in slices across the direction in which they are widest; none where they do not. They
+/// bend where slices are less than half as wide (variance) across it as all together: eight leave a
+/// sixtyfourth of a parabola's.
+Parts slice(const BoundedDraws& draws, const TrackSpace& space) {
+  constexpr std::size_t kSlices = 8;
+  constexpr double kBent = 0.5;
+  const MatrixXd points = toSpace(draws, space);
+  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
+  std::iota(order.begin(), order.end(), Index{0});
+  const Belief whole = describe(points, draws.weights, order);
+  const VectorXd direction = linalg::calcSymmetricEigen(whole.covariance).vectors.rightCols(1);
+  const VectorXd along = points.transpose() * direction;
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return along[a] < along[b]; });
+  Parts parts{{}, VectorXd::Constant(static_cast<Index>(kSlices), 1.0 / kSlices)};
+  double across = 0.0;
+  std::vector<Index> chosen;
+  double share = 0.0;
+  for (const Index i : order) {
+    chosen.push_back(i);
+    share += draws.weights[i];
+    const double end = static_cast<double>(parts.beliefs.size() + 1) / kSlices;
+    if (share >= end - 1e-9 && chosen.size() > static_cast<std::size_t>(points.rows())) {
+      parts.beliefs.push_back(describe(points, draws.weights, chosen));
+      across += calcAcross(parts.beliefs.back(), direction) / kSlices;
+      chosen.clear();
+    }
+  }
+  return parts.beliefs.size() == kSlices && across < kBent * calcAcross(whole, direction) ? parts : Parts{};
+}
+
+Parts listParts(const Estimate& estimate, const TrackSpace& space) {
+  if (estimate.isMultimodal() && estimate.mixture.isGiven()) {
+    return listParts(estimate.mixture, space);
+  }
+  if (estimate.ridge.isGiven()) {
+    return listParts(estimate.ridge, space);
+  }
+  Parts parts;
+  if (estimate.draws.isGiven()) {
+    parts = slice(estimate.draws, space);
+  }
+  return parts.beliefs.empty()
+             ? Parts{{toSpace(estimate.mean, estimate.calcCovariance(), space)}, VectorXd::Ones(1)}
+             : parts;
 }
 
 }  // namespace
 
 tracking::Measurement makeTrackMeasurement(const Estimate& estimate, const TrackSpace& space,
-                                           const NormalBelief& prior, const NormalBelief& believed) {
-  constexpr double kHardly = 1.0 / (kUninformativeShare * kUninformativeShare) - 1.0;
-  constexpr double kNothing = 1e12, kSaysNothing = 1e4;  // prior variances
-  const NormalBelief posterior = describe(estimate, space, believed);
-  const Index p = space.count();
-  // in coordinates in which the prior is of unit variance: information = inverse of the posterior's - 1
-  const linalg::Cholesky unit = linalg::calcCholesky(prior.covariance);
-  const MatrixXd half = linalg::solveLower(unit.lower, posterior.covariance);
-  const MatrixXd whitened = linalg::solveLower(unit.lower, half.transpose());
-  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(0.5 * (whitened + whitened.transpose()));
-  const MatrixXd directions =
-      linalg::solveLower(unit.lower, MatrixXd::Identity(p, p)).transpose() * eigen.vectors;
-  const VectorXd off =
-      eigen.vectors.transpose() * linalg::solveLower(unit.lower, posterior.mean - prior.mean);
-  tracking::Measurement measurement;
-  measurement.rows.resize(p, p);
-  measurement.values.resize(p);
-  MatrixXd covariance = MatrixXd::Zero(p, p);
-  Index k = 0;
-  for (Index i = 0; i < p; ++i) {
-    const double information = 1.0 / std::max(eigen.values[i], 1e-300) - 1.0;
-    const VectorXd axis = unit.lower * eigen.vectors.col(i);  // of the parameters
-    if (!(information > kHardly)) {
-      covariance += kNothing * axis * axis.transpose();
-      continue;
-    }
-    const double root = std::sqrt(information);
-    measurement.rows.row(k) = root * directions.col(i).transpose();
-    measurement.values[k] = measurement.rows.row(k).dot(prior.mean) + off[i] / (eigen.values[i] * root);
-    covariance += axis * axis.transpose() / information;
-    ++k;
-  }
-  measurement.rows.conservativeResize(k, p);
-  measurement.values.conservativeResize(k);
-  measurement.variances = covariance.diagonal();
-  for (double& variance : measurement.variances) {
-    variance = variance < kSaysNothing ? variance : std::numeric_limits<double>::infinity();
-  }
-  return measurement;
+                                           const tracking::Belief& prior) {
+  const Parts parts = listParts(estimate, space);
+  return makeLikelihood(prior, parts.beliefs, parts.weights);
 }
 
 }  // namespace twinmap

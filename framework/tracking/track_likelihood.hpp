@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "framework/estimation/estimate.hpp"
 #include "framework/tracking/track_space.hpp"
 #include "kernels/tracking/model.hpp"
@@ -11,9 +8,9 @@ namespace twinmap {
 
 /// The likelihood of an estimate of p parameters, as rows of a linear measurement. The prior that the
 /// estimate contains is taken out (information and its weighted mean are subtracted). So it counts once.
-/// Directions of which the measurement says hardly more than the prior have no row. Of several separate modes
-/// the one that `believed` makes likeliest is taken. Time and conditions are the caller's.
+/// Directions of which the measurement says hardly more than the prior have no row. Several separate values,
+/// a ridge and draws that bend are modes. Time and conditions are the caller's.
 tracking::Measurement makeTrackMeasurement(const Estimate& estimate, const TrackSpace& space,
-                                           const NormalBelief& prior, const NormalBelief& believed);
+                                           const tracking::Belief& prior);
 
 }  // namespace twinmap

@@ -69,7 +69,7 @@ std::vector<std::string> listConditions(const TrackingSpec& tracking) {
 tracking::Model makeTrackModel(const TrackingSpec* tracking, const ModelSpec& model,
                                const TrackSpace& space) {
   tracking::Model made;
-  const NormalBelief prior = makeTrackPrior(model, space);
+  const tracking::Belief prior = makeTrackPrior(model, space);
   made.mean = prior.mean;
   made.covariance = prior.covariance;
   made.drifts.resize(model.parameters.size());

@@ -51,16 +51,17 @@ Drawn collect(const TrackCourse& course, const TrackSpace& space, Index j) {
   const auto count = static_cast<Index>(course.records.size());
   const Index step = (count + kMostDrawn - 1) / kMostDrawn;
   for (Index i = 0; i < count; i += std::max<Index>(step, 1)) {
-    const auto value = [&](const Eigen::MatrixXd& means, const Eigen::MatrixXd& stddevs, double factor) {
-      return space.toValue(j, means(j, i) + factor * kNormal95 * stddevs(j, i));
+    const auto value = [&](const tracking::Course& one, double factor) {
+      return space.toValue(j, one.means(j, i) + factor * kNormal95 * one.stddevs(j, i));
     };
+    const auto& [used, filtered, smoothed] = course.whole;
     drawn.times.push_back(course.records[static_cast<std::size_t>(i)].measurement.time);
-    drawn.mean.push_back(value(course.filtered, course.filtered_stddevs, 0.0));
-    drawn.lower.push_back(value(course.filtered, course.filtered_stddevs, -1.0));
-    drawn.upper.push_back(value(course.filtered, course.filtered_stddevs, 1.0));
-    drawn.smoothed.push_back(value(course.smoothed, course.smoothed_stddevs, 0.0));
-    drawn.smoothed_lower.push_back(value(course.smoothed, course.smoothed_stddevs, -1.0));
-    drawn.smoothed_upper.push_back(value(course.smoothed, course.smoothed_stddevs, 1.0));
+    drawn.mean.push_back(value(filtered, 0.0));
+    drawn.lower.push_back(value(filtered, -1.0));
+    drawn.upper.push_back(value(filtered, 1.0));
+    drawn.smoothed.push_back(value(smoothed, 0.0));
+    drawn.smoothed_lower.push_back(value(smoothed, -1.0));
+    drawn.smoothed_upper.push_back(value(smoothed, 1.0));
   }
   return drawn;
 }
@@ -209,7 +210,7 @@ std::string makeLastMeasurements(const TrackCourse& course) {
     rows.push_back({{"time", record.measurement.time},
                     {"source", record.source},
                     {"status", record.status},
-                    {"used", course.used[i] ? "yes" : "no"}});
+                    {"used", course.whole.used[i] ? "yes" : "no"}});
   }
   return makeTable(rows,
                    {{"time", "time"}, {"measurement", "source"}, {"status", "status"}, {"used", "used"}});

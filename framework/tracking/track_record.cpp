@@ -38,6 +38,20 @@ void require(bool fits) {
   }
 }
 
+constexpr double kSaysNothing = std::numeric_limits<double>::infinity();
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// Rows, values and variances of a measurement or of a mode.
+template <class Likelihood>
+void readLikelihood(const Json& json, Index parameters, Likelihood& likelihood) {
+  likelihood.values = readNumbers(json.at("values"), kMissing);
+  const VectorXd rows = readNumbers(json.at("rows"), kMissing);
+  require(rows.size() == likelihood.values.size() * parameters);
+  likelihood.rows = Eigen::Map<const Eigen::MatrixXd>(rows.data(), likelihood.values.size(), parameters);
+  likelihood.variances = readNumbers(json.at("variances"), kSaysNothing);
+  require(likelihood.variances.size() == parameters);
+}
+
 }  // namespace
 
 bool TrackRecord::isBefore(const TrackRecord& other) const {
@@ -50,6 +64,13 @@ std::string writeRecord(const TrackRecord& record) {
   for (const Covariate& covariate : record.covariates) {
     covariates.push_back({covariate.name, covariate.value});
   }
+  Json modes = Json::array();
+  for (const tracking::Mode& mode : measurement.modes) {
+    modes.push_back({{"rows", writeNumbers(mode.rows)},
+                     {"values", writeNumbers(mode.values)},
+                     {"variances", writeNumbers(mode.variances)},
+                     {"log_weight", mode.log_weight}});
+  }
   return formatJson({{"time", measurement.time},
                      {"source", record.source},
                      {"digest", record.digest},
@@ -59,7 +80,8 @@ std::string writeRecord(const TrackRecord& record) {
                      {"values", writeNumbers(measurement.values)},
                      {"variances", writeNumbers(measurement.variances)},
                      {"conditions", writeNumbers(measurement.conditions)},
-                     {"covariates", covariates}});
+                     {"covariates", covariates},
+                     {"modes", modes}});
 }
 
 TrackRecord readRecord(const std::string& line, Index parameters, Index conditions) {
@@ -70,18 +92,17 @@ TrackRecord readRecord(const std::string& line, Index parameters, Index conditio
     for (const Json& covariate : json.at("covariates")) {
       record.covariates.push_back({covariate.at(0), covariate.at(1)});
     }
-    constexpr double kSaysNothing = std::numeric_limits<double>::infinity();
-    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
     tracking::Measurement& measurement = record.measurement;
     record.estimate = readNumbers(json.at("estimate"), kMissing);
     measurement.time = json.at("time");
-    measurement.values = readNumbers(json.at("values"), kMissing);
-    const VectorXd rows = readNumbers(json.at("rows"), kMissing);
-    require(rows.size() == measurement.values.size() * parameters);
-    measurement.rows = Eigen::Map<const Eigen::MatrixXd>(rows.data(), measurement.values.size(), parameters);
-    measurement.variances = readNumbers(json.at("variances"), kSaysNothing);
+    readLikelihood(json, parameters, measurement);
+    for (const Json& mode : json.at("modes")) {
+      measurement.modes.emplace_back();
+      measurement.modes.back().log_weight = mode.at("log_weight");
+      readLikelihood(mode, parameters, measurement.modes.back());
+    }
     measurement.conditions = readNumbers(json.at("conditions"), kMissing);
-    require(measurement.variances.size() == parameters && measurement.conditions.size() == conditions);
+    require(measurement.conditions.size() == conditions);
     return record;
   } catch (const Json::exception&) {
     throw std::runtime_error("is not a record of such a tracker");

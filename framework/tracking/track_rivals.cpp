@@ -8,20 +8,46 @@ namespace twinmap {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Chi-square that a level and a slope over x leave of values of weights w; infinite where x does not vary.
-double calcLeft(const VectorXd& x, const VectorXd& values, const VectorXd& weights) {
-  const double total = weights.sum();
-  const VectorXd across = x.array() - weights.dot(x) / total;
-  const VectorXd off = values.array() - weights.dot(values) / total;
-  const double spread = weights.dot(across.cwiseAbs2());
+/// Chi-square that sums of the columns (n x c) leave of values of weights w (Gram and Schmidt); infinite
+/// where the second column does not differ from the first.
+double calcLeft(MatrixXd columns, VectorXd values, const VectorXd& weights) {
   constexpr double kVaries = 1e-12;
-  if (!(spread > kVaries * weights.dot(x.cwiseAbs2()))) {
-    return std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < columns.cols(); ++c) {
+    const double before = weights.dot(columns.col(c).cwiseAbs2());
+    for (Index done = 0; done < c; ++done) {
+      const VectorXd along = columns.col(done);
+      columns.col(c) -= (weights.array() * along.array() * columns.col(c).array()).sum() * along;
+    }
+    const double square = weights.dot(columns.col(c).cwiseAbs2());
+    if (!(square > kVaries * before)) {
+      if (c == 1) {
+        return std::numeric_limits<double>::infinity();
+      }
+      columns.col(c).setZero();
+      continue;
+    }
+    columns.col(c) /= std::sqrt(square);
+    values -= (weights.array() * columns.col(c).array() * values.array()).sum() * columns.col(c);
   }
-  const double along = (weights.array() * across.array() * off.array()).sum();
-  return weights.dot(off.cwiseAbs2()) - along * along / spread;
+  return weights.dot(values.cwiseAbs2());
+}
+
+/// Of what a step or a line is.
+double calcLeftOf(const VectorXd& x, const VectorXd& values, const VectorXd& weights) {
+  MatrixXd columns(x.size(), 2);
+  columns << VectorXd::Ones(x.size()), x;
+  return calcLeft(std::move(columns), values, weights);
+}
+
+/// Of a parabola, which has as many numbers as a step with its time.
+double calcLeftOfCurve(const VectorXd& x, const VectorXd& values, const VectorXd& weights) {
+  MatrixXd columns(x.size(), 3);
+  const VectorXd off = x.array() - x.mean();
+  columns << VectorXd::Ones(x.size()), off, off.cwiseAbs2();
+  return calcLeft(std::move(columns), values, weights);
 }
 
 /// The values of a covariate; empty where a measurement lacks it.
@@ -62,16 +88,33 @@ std::vector<std::string> findRivals(const std::deque<CourseSample>& course, cons
     weights[i] = 1.0 / sample.variances[j];
     step[i] = sample.time >= change.time ? 1.0 : 0.0;
   }
-  const double left = calcLeft(step, values, weights);
+  const double left = calcLeftOf(step, values, weights);
   // of a parameter that scatters by more than its measurements say, differences count for less
   const double scatter = std::max(1.0, left / std::max(1.0, static_cast<double>(n - 3)));
   for (const Covariate& covariate : samples.back()->covariates) {
     const VectorXd x = collect(samples, covariate.name);
-    if (x.size() > 0 && calcLeft(x, values, weights) < left + as_likely * scatter) {
+    if (x.size() > 0 && calcLeftOfCurve(x, values, weights) < left + as_likely * scatter) {
       rivals.push_back(covariate.name);
     }
   }
   return rivals;
+}
+
+std::vector<std::string> findRecurringRivals(const std::vector<TrackAlarm>& alarms, double since) {
+  constexpr std::ptrdiff_t kRecurs = 2;
+  std::vector<std::string> named, recurring;
+  for (const TrackAlarm& alarm : alarms) {
+    if (alarm.announced >= since) {
+      named.insert(named.end(), alarm.rivals.begin(), alarm.rivals.end());
+    }
+  }
+  for (const std::string& name : named) {
+    if (std::count(named.begin(), named.end(), name) >= kRecurs &&
+        std::find(recurring.begin(), recurring.end(), name) == recurring.end()) {
+      recurring.push_back(name);
+    }
+  }
+  return recurring;
 }
 
 }  // namespace twinmap

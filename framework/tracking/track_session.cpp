@@ -88,7 +88,7 @@ struct TrackSession::Parts {
   std::vector<std::string> conditions;
   TrackSpace space;
   tracking::Model model;
-  NormalBelief prior;
+  tracking::Belief prior;
   std::optional<TrackedTwin> twin;
   std::optional<TrackHistory> history;
   bool changed = false;  ///< since commit()
@@ -141,12 +141,6 @@ struct TrackSession::Parts {
 
   TrackCourse calcCourse() const {
     return calcTrackCourse(history->read(model.countParameters(), model.conditions), model);
-  }
-
-  NormalBelief believe() const {
-    const tracking::Belief belief = twin->getNow().tracker.calcBelief();
-    const Eigen::Index p = space.count();
-    return {belief.mean.head(p), belief.covariance.topLeftCorner(p, p)};
   }
 
   TrackRecord makeRecord(const MeasurementReader& reader, const Table& table, const std::string& digest,
@@ -202,10 +196,10 @@ struct TrackSession::Parts {
     if (!informs(estimate)) {
       return;
     }
-    const tracking::Measurement said = makeTrackMeasurement(estimate, space, prior, believe());
-    measurement.rows = said.rows;
-    measurement.values = said.values;
-    measurement.variances = said.variances;
+    tracking::Measurement said = makeTrackMeasurement(estimate, space, prior);
+    said.time = measurement.time;
+    said.conditions = measurement.conditions;
+    measurement = std::move(said);
     record.estimate.resize(p);
     for (Eigen::Index j = 0; j < p; ++j) {
       record.estimate[j] = space.toCoordinate(j, estimate.mean[j]);

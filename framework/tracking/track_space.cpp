@@ -36,12 +36,12 @@ double TrackSpace::calcSlope(Index j, double value) const {
   return 1.0 / (half_width_[j] * (is_log_[static_cast<std::size_t>(j)] ? value : 1.0));
 }
 
-NormalBelief makeTrackPrior(const ModelSpec& model, const TrackSpace& space) {
+tracking::Belief makeTrackPrior(const ModelSpec& model, const TrackSpace& space) {
   const BoxPrior box = makeBoxPrior(model);
   const Index p = space.count(), u = box.count();
   const MatrixXd covariance =
       linalg::solveSemidefinite(box.calcInformation(), MatrixXd::Identity(u, u)).topLeftCorner(p, p);
-  NormalBelief prior{VectorXd(p), MatrixXd(p, p)};
+  tracking::Belief prior{VectorXd(p), MatrixXd(p, p)};
   VectorXd scale(p);
   for (Index j = 0; j < p; ++j) {
     const Bounds& bounds = model.parameters[static_cast<std::size_t>(j)].bounds;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "framework/experiment/model/model_spec.hpp"
+#include "kernels/tracking/belief.hpp"
 
 namespace twinmap {
 
@@ -24,13 +25,7 @@ class TrackSpace {
   Eigen::VectorXd center_, half_width_;
 };
 
-/// A normal distribution of the parameters in these coordinates.
-struct NormalBelief {
-  Eigen::VectorXd mean;        ///< p
-  Eigen::MatrixXd covariance;  ///< p x p
-};
-
-/// What is known before any measurement.
-NormalBelief makeTrackPrior(const ModelSpec& model, const TrackSpace& space);
+/// What is known of the parameters before any measurement, in these coordinates.
+tracking::Belief makeTrackPrior(const ModelSpec& model, const TrackSpace& space);
 
 }  // namespace twinmap

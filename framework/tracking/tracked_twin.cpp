@@ -16,6 +16,17 @@ void announce(TrackAlarm alarm, TrackPoint& point) {
   ++point.alarm_count;
 }
 
+std::vector<std::string> listRivals(const tracking::Change& change, const TrackPoint& point) {
+  std::vector<std::string> rivals = findRivals(point.course, change);
+  const double since = point.course.empty() ? change.time : point.course.front().time;
+  for (const std::string& name : findRecurringRivals(point.alarms, since)) {
+    if (std::find(rivals.begin(), rivals.end(), name) == rivals.end()) {
+      rivals.push_back(name);
+    }
+  }
+  return rivals;
+}
+
 }  // namespace
 
 Step advance(const TrackRecord& record, TrackPoint& point) {
@@ -28,7 +39,7 @@ Step advance(const TrackRecord& record, TrackPoint& point) {
     point.course.push_back({time, record.estimate, record.measurement.variances, record.covariates});
   }
   if (step.change) {
-    announce({time, false, *step.change, findRivals(point.course, *step.change)}, point);
+    announce({time, false, *step.change, listRivals(*step.change, point)}, point);
   } else if (step.has_begun_anew) {
     announce({time, true}, point);
   }

@@ -38,8 +38,12 @@ constexpr std::size_t kCourseSamples = 80, kKeptAlarms = 20;
 tracking::Step advance(const TrackRecord& record, TrackPoint& point);
 
 /// Which covariates explain a parameter's course as well as a step at a time does. They are weighted least
-/// squares of a level and a slope over each, as good within log(20) of likelihood.
+/// squares of a parabola over each, as good within log(20) of likelihood.
 std::vector<std::string> findRivals(const std::deque<CourseSample>& course, const tracking::Change& change);
+
+/// Which rivals at least two alarms have that were announced since a time. What the model lacks moves other
+/// parameters too, so that they are rivals of whatever changes next.
+std::vector<std::string> findRecurringRivals(const std::vector<TrackAlarm>& alarms, double since);
 
 /// Measurements in the order of their times, whatever order they come in. As many as `lag` back can be
 /// inserted. The twin is computed again from there, so that the result has the same bits.

@@ -1,6 +1,7 @@
 #include "kernels/tracking/change_bank.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace twinmap::tracking {
@@ -114,7 +115,7 @@ void weigh(const ChangeEvidence& evidence, double without, Supposed& change) {
 }  // namespace
 
 void weighChanges(const ChangeEvidence& evidence, ChangeBank& bank) {
-  constexpr double kAlone = 3.0;  // log(20)
+  constexpr double kAlone = 0.7;  // log(2)
   const double without = std::max(0.0, evidence.log_bad) + std::log1p(std::exp(-std::abs(evidence.log_bad)));
   for (Supposed& change : bank.changes) {
     const bool is_new = &bank.changes.back() - &change < evidence.parameters;
@@ -133,25 +134,71 @@ double calcShiryaevRoberts(const Model& model, const ChangeBank& bank) {
   return std::exp(largest) * calcShares(model, bank, largest).sum() / calcTotalWeight(model);
 }
 
-// Fitted to simulated lives of 1, 2, 4 and 8 parameters without a change, which differ by less than chance.
-// One false alarm in 1000 is at 275 for constants, at 170, 110 and 75 for walks of .1, .3 and 1; at 125 at
-// most where the rate is learnt.
-double calcThreshold(const Model& model, const VectorXd& ratios) {
-  constexpr double kOften = 1e-3, kExponent = 0.85;
-  constexpr double kOfWalks = 53.0, kMoreOfConstants = 222.0, kSlow = 0.11;
-  constexpr double kOfUnknown = 125.0, kMoreOfUnknown = 1.2;
-  double mean = 0.0;
-  for (std::size_t j = 0; j < model.drifts.size(); ++j) {
-    const double of_known = kOfWalks + kMoreOfConstants / (1.0 + ratios[static_cast<Index>(j)] / kSlow);
-    mean += model.drifts[j].change_weight *
-            (std::isnan(model.drifts[j].rate) ? std::min(kOfUnknown, kMoreOfUnknown * of_known) : of_known);
-  }
-  return mean / calcTotalWeight(model) * std::pow(kOften / model.false_alarms, kExponent);
+namespace {
+
+// log of the thresholds at which lives without a change raise .85 of the alarms that are stated, so that one
+// in twenty measurements may be bad (docs/benchmarks/tracking.md). Rows: ratios 0, .1, .316 and 1; columns: 1
+// in 100, 1000 and 10000. They do not depend on the number of parameters.
+constexpr std::size_t kRatioCount = 4, kLevelCount = 3;
+constexpr double kSlow = 0.1;
+constexpr std::array<double, kRatioCount> kRatioPlaces{0.0, 0.5, 0.76, 0.909};  // ratio / (ratio + kSlow)
+using Thresholds = std::array<std::array<double, kLevelCount>, kRatioCount>;
+constexpr Thresholds kOfKnown{{{26.5, 195, 1610}, {27, 141, 850}, {28.5, 76, 340}, {33.5, 47, 200}}};
+constexpr Thresholds kOfUnknown{{{16.5, 50, 165}, {20, 82, 590}, {26.5, 64, 340}, {32.5, 48, 400}}};
+
+double calcLogThreshold(const std::array<double, kLevelCount>& of_levels, double decade) {
+  const std::size_t below = decade < 1.0 ? 0 : 1;
+  const double first = std::log(of_levels[below]), second = std::log(of_levels[below + 1]);
+  return first + (second - first) * (decade - static_cast<double>(below));
 }
 
-Change describeChange(const Model& model, const ChangeBank& bank) {
-  VectorXd shares = calcShares(model, bank, findLargest(bank));
-  shares /= shares.sum();
+/// decade: 0 of 1 in 100, 1 of 1 in 1000.
+double calcThreshold(const Thresholds& thresholds, double ratio, double decade) {
+  const double place = std::min(ratio / (ratio + kSlow), kRatioPlaces.back());
+  std::size_t below = 0;
+  while (below + 2 < kRatioCount && kRatioPlaces[below + 1] < place) {
+    ++below;
+  }
+  const double share = (place - kRatioPlaces[below]) / (kRatioPlaces[below + 1] - kRatioPlaces[below]);
+  return std::exp((1.0 - share) * calcLogThreshold(thresholds[below], decade) +
+                  share * calcLogThreshold(thresholds[below + 1], decade));
+}
+
+}  // namespace
+
+double calcThreshold(const Model& model, const VectorXd& ratios) {
+  const double decade = std::log10(1e-2 / model.false_alarms);
+  double sum = 0.0;
+  for (std::size_t j = 0; j < model.drifts.size(); ++j) {
+    const Thresholds& thresholds = std::isnan(model.drifts[j].rate) ? kOfUnknown : kOfKnown;
+    sum += model.drifts[j].change_weight * calcThreshold(thresholds, ratios[static_cast<Index>(j)], decade);
+  }
+  return sum / calcTotalWeight(model);
+}
+
+VectorXd calcChangeShares(const Model& model, const ChangeBank& bank) {
+  const VectorXd shares = calcShares(model, bank, findLargest(bank));
+  return shares / shares.sum();
+}
+
+void addChanges(const VectorXd& probabilities, const ChangeBank& bank, Belief& belief) {
+  VectorXd mean = VectorXd::Zero(belief.mean.size());
+  for (std::size_t c = 0; c < bank.changes.size(); ++c) {
+    mean += probabilities[static_cast<Index>(c)] * bank.changes[c].size * bank.changes[c].signature;
+  }
+  belief.covariance += (1.0 - probabilities.sum()) * mean * mean.transpose();
+  for (std::size_t c = 0; c < bank.changes.size(); ++c) {
+    const Supposed& change = bank.changes[c];
+    const VectorXd off = change.size * change.signature - mean;
+    belief.covariance +=
+        probabilities[static_cast<Index>(c)] *
+        (change.variance * change.signature * change.signature.transpose() + off * off.transpose());
+  }
+  belief.mean += mean;
+}
+
+Change describeChange(const Model& model, double threshold, const ChangeBank& bank) {
+  const VectorXd shares = calcChangeShares(model, bank);
   Change described;
   described.probabilities = VectorXd::Zero(model.countParameters());
   for (std::size_t c = 0; c < bank.changes.size(); ++c) {
@@ -181,6 +228,7 @@ Change describeChange(const Model& model, const ChangeBank& bank) {
     }
   }
   const Supposed& change = bank.changes[described.place];
+  described.log_prior_odds = -std::log(threshold * best);
   described.time = change.time;
   described.latest = std::max(described.latest, change.time);
   described.size = change.size;

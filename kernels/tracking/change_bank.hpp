@@ -54,6 +54,12 @@ double calcShiryaevRoberts(const Model& model, const ChangeBank& bank);
 /// ratios (p): each walk's standard deviation between two measurements over that of a measurement.
 double calcThreshold(const Model& model, const Eigen::VectorXd& ratios);
 
+/// Of each supposed change, its share of that statistic.
+Eigen::VectorXd calcChangeShares(const Model& model, const ChangeBank& bank);
+
+/// Mean and covariance of a belief over all supposed changes, each with its probability; none has the rest.
+void addChanges(const Eigen::VectorXd& probabilities, const ChangeBank& bank, Belief& belief);
+
 /// A change that was announced.
 struct Change {
   Eigen::Index parameter = 0;
@@ -62,8 +68,11 @@ struct Change {
   double size = 0.0, stddev = 0.0;
   double probability = 0.0;       ///< that it is this parameter
   Eigen::VectorXd probabilities;  ///< p
-  std::size_t place = 0;          ///< of the likeliest, among the bank's
+  /// Before the measurements, of a change of it thereabouts against none: those at which the threshold is
+  /// even.
+  double log_prior_odds = 0.0;
+  std::size_t place = 0;  ///< of the likeliest, among the bank's
 };
-Change describeChange(const Model& model, const ChangeBank& bank);
+Change describeChange(const Model& model, double threshold, const ChangeBank& bank);
 
 }  // namespace twinmap::tracking

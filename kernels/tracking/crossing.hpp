@@ -8,7 +8,7 @@ namespace twinmap::tracking {
 struct Outlook {
   double mean = 0.0, stddev = 0.0;           ///< of the level
   double slope = 0.0, slope_stddev = 0.0;    ///< per unit of time
-  double rate = 0.0, rate_log_stddev = 0.0;  ///< variance per unit of time, and of its logarithm
+  double rate = 0.0, rate_log_stddev = 0.0;  ///< median variance per unit of time, and of its logarithm
 };
 
 /// Quantiles of the time until a level first passes a limit; infinite of what has less probability.

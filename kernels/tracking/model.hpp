@@ -40,7 +40,16 @@ struct Model {
   }
 };
 
-/// What one measurement says: values = rows parameters + noise of unit variance, independent.
+/// One of several things that a measurement may say, as the likelihood is of it alone.
+struct Mode {
+  Eigen::MatrixXd rows;       ///< k x p
+  Eigen::VectorXd values;     ///< k
+  Eigen::VectorXd variances;  ///< p
+  double log_weight = 0.0;    ///< by which its density is multiplied
+};
+
+/// What one measurement says: values = rows parameters + noise of unit variance, independent. Where several
+/// separate values fit, the likelihood is the sum of modes; rows and values are then those of all together.
 struct Measurement {
   double time = 0.0;
   Eigen::MatrixXd rows;    ///< k x p
@@ -48,6 +57,7 @@ struct Measurement {
   Eigen::VectorXd
       variances;  ///< p, of each parameter by this measurement alone; infinite where it says nothing
   Eigen::VectorXd conditions;  ///< of the model; NaN where missing
+  std::vector<Mode> modes{};
 };
 
 inline Eigen::Index Model::countSlopes() const {

@@ -16,8 +16,9 @@ struct RateFilters {
   Eigen::VectorXd log_weights;  ///< kRates, of their predictions so far and the prior; the largest is 0
 };
 
-/// exp(-ratio / 2), so that rates beyond some standard deviations of a measurement are taken only where they
-/// are seen; uniform in the logarithm below.
+/// sqrt(ratio) exp(-ratio / 2) over the logarithm, so that rates beyond some standard deviations of a
+/// measurement are taken only where they are seen. Of priors that are uniform below, or have a share at 0,
+/// bands of slow walks are too narrow (docs/benchmarks/tracking.md).
 Eigen::VectorXd makeLogRatePrior();
 
 /// Weights, of sum 1, of ratios between those of the filters.

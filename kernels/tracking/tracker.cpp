@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/tracking/modes.hpp"
+
 namespace twinmap::tracking {
 
 using Eigen::Index;
@@ -21,10 +23,12 @@ constexpr double kNever = 1e300;
 constexpr double kAbove = 0.6;
 
 /// log of the ratio of the densities of the length r of k standardized values. Half-Cauchy of scale 10, as
-/// bad measurements are anywhere, over chi of k degrees; with the odds of being bad.
+/// bad measurements are anywhere, over chi of k degrees; with the odds of being bad. What is nearer than
+/// noise is on average is as good as that.
 double calcLogBad(double chi_square, double degrees) {
   constexpr double kScale = 10.0, kLogTwo = 0.69314718055994531, kPi = 3.14159265358979324;
-  const double length = std::sqrt(std::max(chi_square, 1e-12));
+  chi_square = std::max(chi_square, degrees);
+  const double length = std::sqrt(chi_square);
   const double log_bad = std::log(2.0 * kScale / kPi) - std::log(kScale * kScale + chi_square);
   const double log_good = (degrees - 1.0) * std::log(length) - 0.5 * chi_square -
                           (0.5 * degrees - 1.0) * kLogTwo - std::lgamma(0.5 * degrees);
@@ -187,15 +191,17 @@ void Tracker::take(const StateRows& rows, const Belief& updated) {
   }
 }
 
-Step Tracker::advance(const Measurement& measurement) {
-  moveTo(measurement.time);
+Step Tracker::advance(const Measurement& said) {
+  moveTo(said.time);
+  noteConditions(said);
+  Step step;
+  step.taken = resolveModes(model_, said, state_.reference, state_.belief);
+  const Measurement& measurement = step.taken;
   noteVariances(measurement);
-  noteConditions(measurement);
   const StateRows rows = makeStateRows(model_, measurement, state_.reference, state_.spread, state_.belief);
   std::vector<Innovation> innovations(static_cast<std::size_t>(measurement.values.size()));
   Belief updated = state_.belief;
   update(rows, updated, &innovations);
-  Step step;
   step.degrees = static_cast<double>(innovations.size());
   for (const Innovation& innovation : innovations) {
     step.chi_square += innovation.value * innovation.value / innovation.variance;
@@ -206,14 +212,15 @@ Step Tracker::advance(const Measurement& measurement) {
     take(rows, updated);
   }
   weighChanges({rows, innovations, log_bad, step.is_used, model_.countParameters()}, state_.changes);
-  step.statistic = calcShiryaevRoberts(model_, state_.changes) / calcThreshold(model_, calcRatios());
+  const double threshold = calcThreshold(model_, calcRatios());
+  step.statistic = calcShiryaevRoberts(model_, state_.changes) / threshold;
   if (!innovations.empty()) {
     state_.run_of_bad = step.is_used ? 0 : state_.run_of_bad + 1;
     state_.surprises += (step.is_used ? 0.0 : 1.0) - state_.surprises / kMemory;
   }
   if (step.statistic >= 1.0) {
-    step.change = describeChange(model_, state_.changes);
-    confirm(*step.change);
+    step.change = describeChange(model_, threshold, state_.changes);
+    confirm(*step.change, step.statistic);
   } else if (state_.run_of_bad == kRunOfBad) {
     step.has_begun_anew = true;
     beginAnew();
@@ -244,16 +251,29 @@ void Tracker::beginAnew() {
   state_.run_of_bad = 0;
 }
 
-/// The belief with the change; each filter has it, and weighs rates as before the change.
-void Tracker::confirm(const Change& change) {
-  const Supposed& supposed = state_.changes.changes[change.place];
-  state_.belief.mean += supposed.size * supposed.signature;
-  state_.belief.covariance += supposed.variance * supposed.signature * supposed.signature.transpose();
+/// log of a mixture of two distributions that are known but for a factor.
+VectorXd mix(const VectorXd& log_one, const VectorXd& log_other, double share_of_one) {
+  const auto normalize = [](const VectorXd& log) -> Eigen::ArrayXd {
+    const Eigen::ArrayXd weights = (log.array() - log.maxCoeff()).exp();
+    return weights / weights.sum();
+  };
+  const Eigen::ArrayXd mixed =
+      share_of_one * normalize(log_one) + (1.0 - share_of_one) * normalize(log_other);
+  return (mixed / mixed.maxCoeff()).max(1e-300).log();
+}
+
+/// All that is believed is a mixture of the changes that are supposed and of none, with odds that are even at
+/// the threshold, where an alarm is as likely false as true. Rates are as before the likeliest change, or as
+/// without any.
+void Tracker::confirm(const Change& change, double odds) {
+  const double probability = odds / (1.0 + odds);
+  addChanges(probability * calcChangeShares(model_, state_.changes), state_.changes, state_.belief);
   const MatrixXd log_weights =
       state_.changes.log_weights[change.place / static_cast<std::size_t>(model_.countParameters())];
   for (std::size_t u = 0; u < state_.filters.size(); ++u) {
-    state_.filters[u].log_weights = log_weights.col(static_cast<Index>(u));
-    std::fill(state_.filters[u].beliefs.begin(), state_.filters[u].beliefs.end(), state_.belief);
+    RateFilters& filters = state_.filters[u];
+    filters.log_weights = mix(log_weights.col(static_cast<Index>(u)), filters.log_weights, probability);
+    std::fill(filters.beliefs.begin(), filters.beliefs.end(), state_.belief);
   }
   state_.changes = {};
   state_.run_of_bad = 0;

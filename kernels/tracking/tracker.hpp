@@ -33,6 +33,7 @@ struct Step {
   std::optional<Change> change{};
   bool has_begun_anew = false;   ///< nothing of one parameter explains the last ones: all are unknown again
   bool is_uncalibrated = false;  ///< half of the last 20 were not used
+  Measurement taken{};           ///< what it said, its modes resolved (resolveModes())
 };
 
 /// Exact filters of a linear model with normal noise. Means and covariances are Kalman's where rates are
@@ -44,7 +45,7 @@ class Tracker {
   explicit Tracker(Model model);
 
   /// Times may not go back. O((rates unknown + changes supposed) k n^2), with four parameters some 20 us.
-  Step advance(const Measurement& measurement);
+  Step advance(const Measurement& said);
 
   const Model& getModel() const { return model_; }
   const TrackerState& getState() const { return state_; }
@@ -64,7 +65,7 @@ class Tracker {
   void noteVariances(const Measurement& measurement);
   void moveTo(double time);
   void take(const StateRows& rows, const Belief& updated);
-  void confirm(const Change& change);
+  void confirm(const Change& change, double odds);
   void beginAnew();
   bool widenRates();
   double calcUnitRate(Eigen::Index parameter) const;

@@ -48,6 +48,7 @@ ALLOWED = {
         "store",
         "inference",
         "diagnosis",
+        "tracking",
         "results",
         "report",
     },

@@ -37,6 +37,7 @@
 #include "framework/study/samples/model_store.hpp"
 #include "framework/study/samples/stencils.hpp"
 #include "framework/study/samples/write_features.hpp"
+#include "framework/tracking/track_power.hpp"
 
 namespace twinmap {
 namespace {
@@ -255,6 +256,11 @@ RunSummary runStagesWithoutMap(const Study& study) {
 std::vector<GateResult> writeFolder(const ExperimentSpec& experiment, const RunOptions& options, int threads,
                                     const RunSummary& run) {
   writeResults(options.folder, run);
+  if (options.samples == nullptr &&
+      run.evaluation.predictions.stddev.size() > 0) {  // not each case of a sweep
+    writeTextFile(options.folder / "track_power.csv",
+                  makeTrackPowerCsv(run.parameters, run.evaluation.predictions, experiment.seed));
+  }
   Provenance provenance;
   provenance.command = options.command;
   provenance.seed = experiment.seed;

@@ -37,6 +37,7 @@ RESULTS = [
     "samples.h5",
     "table.md",
     "table.tex",
+    "track_power.csv",
     "training.csv",
     "trust_power.csv",
 ]

@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
-#include "kernels/tracking/belief.hpp"
+#include "kernels/tracking/modes.hpp"
 #include "tests/framework/support/linear_simulator.hpp"
 #include "tests/lu.hpp"
 
@@ -18,7 +19,7 @@ using Eigen::Vector2d;
 struct Setting {
   std::vector<ParameterSpec> parameters = testing::makeParameters(2, -10.0, 10.0);
   TrackSpace space{parameters};
-  NormalBelief prior{Eigen::VectorXd::Zero(2), MatrixXd::Identity(2, 2) / 3.0};
+  tracking::Belief prior{Eigen::VectorXd::Zero(2), MatrixXd::Identity(2, 2) / 3.0};
 };
 
 Estimate makeEstimate(const Vector2d& mean, const Matrix2d& covariance) {
@@ -33,7 +34,7 @@ TEST(Likelihood, WithThePriorAgainIsThePosterior) {
   covariance << 4.0, 1.5, 1.5, 2.0;  // half-widths are 10: a posterior that the prior matters to
   const Vector2d mean(3.0, -2.0);
   const tracking::Measurement said =
-      makeTrackMeasurement(makeEstimate(mean, covariance), setting.space, setting.prior, setting.prior);
+      makeTrackMeasurement(makeEstimate(mean, covariance), setting.space, setting.prior);
   const MatrixXd information =
       said.rows.transpose() * said.rows + test::calcInverse(setting.prior.covariance);
   const MatrixXd posterior = test::calcInverse(information);
@@ -45,10 +46,40 @@ TEST(Likelihood, HasNoRowWhereNothingIsSaid) {
   const Setting setting;
   const Matrix2d covariance = Vector2d(0.01, 100.0 / 3.0).asDiagonal();
   const tracking::Measurement said =
-      makeTrackMeasurement(makeEstimate({1.0, 0.0}, covariance), setting.space, setting.prior, setting.prior);
+      makeTrackMeasurement(makeEstimate({1.0, 0.0}, covariance), setting.space, setting.prior);
   EXPECT_EQ(said.rows.rows(), 1);
   EXPECT_TRUE(std::isfinite(said.variances[0]));
   EXPECT_FALSE(std::isfinite(said.variances[1]));
+}
+
+TEST(Likelihood, OfDrawsThatBendHasModesAlongThem) {
+  const Setting setting;
+  Estimate estimate;
+  estimate.draws.points.resize(2, 4000);
+  estimate.draws.weights = Eigen::VectorXd::Constant(4000, 1.0 / 4000);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (Eigen::Index i = 0; i < 4000; ++i) {
+    const double x = 3.0 * normal(random);
+    estimate.draws.points.col(i) << x, 0.1 * x * x + 0.1 * normal(random);
+  }
+  estimate.mean = estimate.draws.points.rowwise().mean();
+  estimate.stddev = Vector2d(3.0, 1.3);
+  estimate.correlation = Matrix2d::Identity();
+  const tracking::Measurement said = makeTrackMeasurement(estimate, setting.space, setting.prior);
+  EXPECT_EQ(said.modes.size(), 8U);
+  // where x is known to be 3, the other is known to be near .9
+  tracking::Model model;
+  model.drifts.resize(2);
+  tracking::Belief belief{Vector2d(0.3, 0.0), Vector2d(1e-4, 1.0 / 3.0).asDiagonal()};
+  const tracking::Measurement resolved = resolveModes(model, said, {}, belief);
+  update({resolved.rows.transpose(), resolved.values}, belief);
+  EXPECT_NEAR(10.0 * belief.mean[1], 0.9, 0.5);
+  EXPECT_LT(10.0 * std::sqrt(belief.covariance(1, 1)), 0.6);
+  for (Eigen::Index i = 0; i < 4000; ++i) {
+    estimate.draws.points(1, i) = 0.1 * normal(random);
+  }
+  EXPECT_TRUE(makeTrackMeasurement(estimate, setting.space, setting.prior).modes.empty());
 }
 
 TEST(Likelihood, OfLogarithmsIsOfThem) {

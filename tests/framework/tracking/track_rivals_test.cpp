@@ -35,5 +35,13 @@ TEST(Rivals, AreNoneOfAStep) {
   EXPECT_TRUE(findRivals(makeCourse(false), makeChange()).empty());
 }
 
+TEST(Rivals, ThatRecurAreThoseOfWhateverChangesNext) {
+  const std::vector<TrackAlarm> alarms{{1.0, false, {}, {"the speed of x"}},
+                                       {5.0, false, {}, {"the amplitude of x", "the speed of x"}},
+                                       {9.0, false, {}, {"the amplitude of x"}}};
+  EXPECT_EQ(findRecurringRivals(alarms, 2.0), std::vector<std::string>{"the amplitude of x"});
+  EXPECT_TRUE(findRecurringRivals(alarms, 6.0).empty());
+}
+
 }  // namespace
 }  // namespace twinmap

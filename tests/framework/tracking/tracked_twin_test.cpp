@@ -56,12 +56,13 @@ TEST(TrackedTwin, AnnouncesAStep) {
 }
 
 TEST(TrackHistory, SmoothsOnBothSidesOfAStep) {
-  const TrackCourse course = calcTrackCourse(testing::makeRecords(60), testing::makeModel());
-  EXPECT_NEAR(course.smoothed(0, 38), 0.1, 4.0 * course.smoothed_stddevs(0, 38));
-  EXPECT_NEAR(course.smoothed(0, 41), 0.3, 4.0 * course.smoothed_stddevs(0, 41));
-  EXPECT_LT(course.smoothed_stddevs(0, 20), course.filtered_stddevs(0, 20));
+  const auto [used, filtered, smoothed] =
+      calcTrackCourse(testing::makeRecords(60), testing::makeModel()).whole;
+  EXPECT_NEAR(smoothed.means(0, 38), 0.1, 4.0 * smoothed.stddevs(0, 38));
+  EXPECT_NEAR(smoothed.means(0, 41), 0.3, 4.0 * smoothed.stddevs(0, 41));
+  EXPECT_LT(smoothed.stddevs(0, 20), filtered.stddevs(0, 20));
   for (Eigen::Index j = 0; j < 2; ++j) {  // nothing comes after the last
-    EXPECT_NEAR(course.smoothed(j, 59), course.filtered(j, 59), 0.5 * course.filtered_stddevs(j, 59));
+    EXPECT_NEAR(smoothed.means(j, 59), filtered.means(j, 59), 0.5 * filtered.stddevs(j, 59));
   }
 }
 

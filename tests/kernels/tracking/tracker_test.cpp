@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "kernels/tracking/flat_state.hpp"
+#include "kernels/tracking/whole_course.hpp"
 #include "tests/kernels/tracking/lives.hpp"
 
 namespace twinmap::tracking {
@@ -107,6 +108,59 @@ TEST(Alarms, AreNotRaisedByOneBadMeasurement) {
   EXPECT_FALSE(step.is_used);
   EXPECT_FALSE(step.change.has_value());
   EXPECT_EQ(tracker.calcBelief().mean, before.mean);
+}
+
+TEST(Tracker, UsesMeasurementsThatAreNearerThanNoiseIs) {
+  Tracker tracker(testing::makeModel(4, 0.0));
+  Measurement measurement = LivingMachine(4, {}, 1).measure();
+  measurement.values.setConstant(1e-3);
+  EXPECT_TRUE(tracker.advance(measurement).is_used);
+}
+
+// An alarm at its threshold is as likely false as true: a band that believed it would hold .93 at most.
+TEST(Tracker, HoldsWhatItSaysOfAConstantAfterFalseAlarms) {
+  int held = 0, all = 0;
+  for (unsigned l = 0; l < 150; ++l) {
+    LivingMachine machine(1, {}, l);
+    Model model = testing::makeModel(1, 0.0);
+    model.false_alarms = 0.01;
+    Tracker tracker(model);
+    bool has_alarm = false;
+    for (int i = 0; i < 200; ++i) {
+      has_alarm = tracker.advance(machine.measure()).change || has_alarm;
+      const Belief belief = tracker.calcBelief();
+      const double off = std::abs(belief.mean[0] - machine.getTruth()[0]);
+      held += has_alarm && off < 1.96 * std::sqrt(belief.covariance(0, 0)) ? 1 : 0;
+      all += has_alarm ? 1 : 0;
+    }
+  }
+  EXPECT_GT(static_cast<double>(held) / all, 0.93);
+  EXPECT_LT(static_cast<double>(held) / all, 0.97);
+}
+
+TEST(WholeCourse, TakesBackAChangeThatLaterMeasurementsSpeakAgainst) {
+  int with_alarm = 0, taken_back = 0;
+  for (unsigned l = 0; l < 60; ++l) {
+    LivingMachine machine(1, {}, l);
+    Model model = testing::makeModel(1, 0.0);
+    model.false_alarms = 0.01;
+    std::vector<Measurement> measurements;
+    bool has_alarm = false, has_late_one = false;  // of which nothing is known yet
+    Tracker tracker(model);
+    for (int i = 0; i < 200; ++i) {
+      measurements.push_back(machine.measure());
+      const bool is_alarm = tracker.advance(measurements.back()).change.has_value();
+      (i < 100 ? has_alarm : has_late_one) |= is_alarm;
+    }
+    if (has_alarm && !has_late_one) {
+      ++with_alarm;
+      const WholeCourse course = calcWholeCourse(model, measurements);
+      const double moved = course.smoothed.means(0, 199) - course.smoothed.means(0, 0);
+      taken_back += std::abs(moved) < 1e-6 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(with_alarm, 8);
+  EXPECT_GE(2 * taken_back, with_alarm);  // chance alone speaks for the others to the end
 }
 
 TEST(Tracker, HoldsWhatItSaysWhereOneInTwentyIsBad) {

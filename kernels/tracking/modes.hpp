@@ -1,0 +1,23 @@
+#pragma once
+
+#include "kernels/tracking/belief.hpp"
+
+namespace twinmap::tracking {
+
+/// The likelihood that takes one normal belief of p parameters to another, as rows of unit noise. Directions
+/// in which the second knows hardly more than the first have none: its sd is above .9 of the first's.
+Measurement makeLikelihood(const Belief& before, const Belief& after);
+
+/// The likelihood of a mixture of normal beliefs (weights: of sum 1) from one before it. `after` has at least
+/// one.
+Measurement makeLikelihood(const Belief& before, const std::vector<Belief>& after,
+                           const Eigen::VectorXd& weights);
+
+/// What a measurement says: itself where it has no modes. Else the normal likelihood that gives this belief
+/// the mean and covariance which all modes together give it (assumed density filtering). One mode that the
+/// belief makes a thousand times as likely as all others is taken as it is. Where all contradict the belief
+/// that is the nearest.
+Measurement resolveModes(const Model& model, const Measurement& measurement, const Eigen::VectorXd& reference,
+                         const Belief& belief);
+
+}  // namespace twinmap::tracking
