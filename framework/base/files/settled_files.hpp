@@ -10,8 +10,8 @@
 namespace twinmap {
 
 /// The files of a folder, as they come and are complete. Complete is what has the same size and time of its
-/// last change at two looks a second apart: whoever writes it has not written since. So it needs nothing of
-/// the writer, nor of clocks of other machines.
+/// last change at two looks a second apart. So it needs nothing of the writer, nor of clocks of other
+/// machines.
 class SettledFiles {
  public:
   using Clock = std::chrono::steady_clock;

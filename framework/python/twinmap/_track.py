@@ -47,13 +47,13 @@ def _write_time(at: Optional[Time]) -> str:
 class Track:
     """A twin in time: each measurement updates a belief over the parameters (docs/how-to/track-a-machine.md).
 
-    run_or_experiment: the folder of a run, its maps.h5, an experiment file, or an Experiment. state: the file of the
-    belief, begun by the first measurement and gone on with from then; one process at a time has it, from here until
-    close() or the end of `with`. tracking: how parameters move, a file with a section `tracking` or that section as a
-    mapping; None: the experiment's own, else all walk at unknown rates. use: statuses whose measurements update
-    although they do not by themselves. known: values of the known inputs. refine: as of Map.infer(). lag: how many
-    measurements back a late one may belong. Raises ExperimentError for what is wrong of these, RuntimeError for a state
-    file that is damaged, in use, or of another experiment.
+    What infers, `run_or_experiment`, is the folder of a run, its maps.h5, an experiment file, or an Experiment. The belief is
+    in the file `state`: begun by the first measurement, gone on with from then. One process at a time has it, until close()
+    or the end of `with`. How parameters move is `tracking`: a file with a section `tracking`, or that section as a mapping.
+    Left out, it is the experiment's own; without one all walk at unknown rates. Statuses in `use` let their measurements
+    update although they do not by themselves. Known inputs have their values in `known`. As of Map.infer() is `refine`.
+    A late measurement may be `lag` measurements back. Raises ExperimentError for what is wrong of these. Raises RuntimeError
+    for a state file that is damaged, in use, or of another experiment.
     """
 
     def __init__(
@@ -86,9 +86,9 @@ class Track:
     ) -> Dict[str, Any]:
         """Infers a measurement and updates the belief by it: the answer of `twinmap track`, which is on the disk then.
 
-        measurement: as of Map.infer(). at: its time; None: by its table (`tracking.time`), else its number. start: the
-        time in it (s) that is the model's 0. trial: which of the experiment's trials it records. The same again is
-        answered, not counted. Raises MeasurementError where it cannot be used: nothing has changed then.
+        The measurement is as of Map.infer(). Its time is `at`, else by its table (`tracking.time`), else its number. The model's
+        0 is at `start` in it (s). Which of the experiment's trials it records is `trial`. The same again is answered, not
+        counted. Raises MeasurementError where it cannot be used: nothing has changed then.
         """
         when, of = _write_time(at), trial or ""
         if isinstance(measurement, (str, os.PathLike)):
@@ -104,7 +104,7 @@ class Track:
 
     @property
     def parameters(self) -> DataFrame:
-        """The belief now, a row for each parameter: unit, mean, stddev, lower, upper (of 95 %), walk. That is how far it
+        """The belief now, a row for each parameter: unit, mean, stddev, lower, upper (of 95 %), walk. The last is how far it
         walks from one measurement to the next, a standard deviation."""
         found = self.state["parameters"]
         rows = [
@@ -127,8 +127,8 @@ class Track:
 
     @property
     def alarms(self) -> DataFrame:
-        """The last changes that were announced, a row each: announced, parameter (None: several at once), time, size, stddev,
-        unit, probability, rivals. These are what else explains the parameter's course as well."""
+        """The last changes that were announced, a row each: announced, parameter, time, size, stddev, unit, probability, rivals.
+        The parameter is None of several at once. Rivals are what else explains its course as well."""
         rows = [
             {
                 "announced": one["announced"],
@@ -147,8 +147,8 @@ class Track:
 
     @property
     def forecast(self) -> DataFrame:
-        """When each limit (`tracking.limits`) is crossed, a row each: parameter, side ("min", "max"), limit, and of the time
-        median, lower and upper (95 %). None is never."""
+        """When limits (`tracking.limits`) are crossed, a row each: parameter, side ("min", "max"), limit, median, lower, upper.
+        The last three are of the time (95 %), where None is never."""
         rows = [
             {
                 "parameter": one["parameter"],
@@ -163,10 +163,9 @@ class Track:
         return make_frame_of_rows(rows, ["parameter", "side", "limit", "median", "lower", "upper"])
 
     def history(self) -> DataFrame:
-        """All measurements so far, a row for each and each parameter, in the order of their times.
-
-        Columns: time, source, status, used, parameter, unit. What was believed then: mean, sd, lower, upper. What all of
-        them say of that time: smoothed_mean, smoothed_sd, smoothed_lower, smoothed_upper."""
+        """All measurements so far in the order of their times, a row for each and each parameter. What was believed then is mean,
+        sd, lower, upper. What all of them say of that time is smoothed_mean, smoothed_sd, smoothed_lower, smoothed_upper.
+        Beside them stand time, source, status, used, parameter, unit."""
         return read_csv(io.StringIO(self._track.make_history()))
 
     def write_page(self, path: PathLike) -> None:
