@@ -76,7 +76,8 @@ def is_better(cell, own):
     better = []
     if cell.error < 0.9 * own.error and cell.worst < own.worst:
         better.append("error")
-    if abs(cell.covered95 - 0.95) + 0.04 < abs(own.covered95 - 0.95):
+    chance = 2 * np.sqrt(0.95 * 0.05 / own.answered)  # of machines, whose parameters hold or fail together
+    if abs(cell.covered95 - 0.95) + chance < abs(own.covered95 - 0.95):
         better.append("coverage")
     if cell.silent < own.silent:
         better.append("silent")

@@ -1,6 +1,7 @@
 """Writes docs/benchmarks/peers.md from the answers of a store."""
 import json
 
+import real
 import yaml
 from cases import KINDS
 from judge import is_better, judge, read
@@ -138,9 +139,15 @@ class Page:
         return "\n" + text if text else ""
 
 
+def make_real(store, remark):
+    described = real.describe(store)
+    return f"\n## Real machines\n\n{remark}\n\n{described}" if described else ""
+
+
 def write_page(table):
     page = Page(table)
     versions = [one for name in ("plain", "torch", "figaroh") for one in table.environments.list_versions(name)]
     most = max([cell.asked for cell in page.cells.values()], default=0)
     text = HEAD.format(most=most, versions=f"Versions: {', '.join(versions)}.", overview=page.make_overview())
-    return text + "\n" + "\n".join(page.make_case(kind) for kind in KINDS) + page.remarks["end"]
+    text += "\n" + "\n".join(page.make_case(kind) for kind in KINDS)
+    return text + make_real(table.store, page.remarks["real"])

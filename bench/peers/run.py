@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Answers of twinmap and of what a user would take instead, on the same recordings, and the page that compares them.
 
-Usage: bench/peers/run.py BUILD STORE [--peers A,B] [--cases A,B] [--machines N] [--page docs/benchmarks/peers.md]
+Usage: bench/peers/run.py BUILD STORE [--peers A,B] [--cases A,B] [--machines N] [--real FOLDER] [--page docs/benchmarks/peers.md]
 
 BUILD is a build of twinmap with its Python package (build/release). STORE, outside of the source tree, keeps environments,
-recordings and answers (a line of JSON each): a call that was stopped goes on where it ended. --page writes the page from what
+recordings and answers (a line of JSON each): a call that was stopped goes on where it ended. --real: the recordings of the real
+machines, as bench/real_machines.py takes them, which are not part of the project. --page writes the page from what
 STORE has, and --only-page runs nothing. Versions are pinned in bench/peers/requirements and printed.
 """
 import argparse
@@ -12,6 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import real
 from cases import KINDS, Maker
 from environments import Environments
 from page import write_page
@@ -74,6 +76,7 @@ def main():
     parser.add_argument("--peers", help="names, with commas; else all")
     parser.add_argument("--cases", help="names, with commas; else all")
     parser.add_argument("--machines", type=int, default=40)
+    parser.add_argument("--real", type=Path)
     parser.add_argument("--page", type=Path)
     parser.add_argument("--only-page", action="store_true", help="run nothing")
     arguments = parser.parse_args()
@@ -84,6 +87,8 @@ def main():
         for peer in peers:
             for kind in kinds:
                 table.answer(kind, peer)
+        if arguments.real:
+            real.measure(arguments.real, table.store, table.environments, real.ASKED)
     if arguments.page:
         arguments.page.write_text(write_page(table))
 
