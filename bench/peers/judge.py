@@ -37,7 +37,9 @@ def holds(intervals, value):
 
 
 def read(file):
-    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    """The answer of each machine, the first where there are two."""
+    lines = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+    return list({line["machine"]: line for line in reversed(lines)}.values())[::-1]
 
 
 def judge(lines, truths):
@@ -69,12 +71,18 @@ def judge(lines, truths):
     return cell
 
 
-def is_better(cell, own):
-    """In what a peer is plainly better than twinmap: by more than chance leaves to so few machines."""
+def list_better(lines, own_lines, truths):
+    """In what a peer is plainly better than twinmap on the machines that both were asked about."""
+    asked = {line["machine"] for line in lines} & {line["machine"] for line in own_lines}
+    both = [[line for line in some if line["machine"] in asked] for some in (lines, own_lines)]
+    return compare(*[judge(some, truths) for some in both])
+
+
+def compare(cell, own):
     if not cell.answered or not own.answered:
         return []
     better = []
-    if cell.error < 0.9 * own.error and cell.worst < own.worst:
+    if cell.error < 0.9 * own.error and cell.worst < 0.95 * own.worst:
         better.append("error")
     chance = 2 * np.sqrt(0.95 * 0.05 / own.answered)  # of machines, whose parameters hold or fail together
     if abs(cell.covered95 - 0.95) + chance < abs(own.covered95 - 0.95):

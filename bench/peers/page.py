@@ -4,7 +4,7 @@ import json
 import real
 import yaml
 from cases import KINDS
-from judge import is_better, judge, read
+from judge import judge, list_better, read
 from peers import HERE, PEERS
 
 OWN = "twinmap_infer"
@@ -74,14 +74,15 @@ class Page:
     def __init__(self, table):
         self.table = table
         self.remarks = yaml.safe_load((HERE / "remarks.yaml").read_text())
-        self.cells = {}
+        self.cells, self.lines, self.truths = {}, {}, {}
         for kind in KINDS:
             truth = table.store / "cases" / kind.name / "truth.json"
-            truths = json.loads(truth.read_text()) if truth.exists() else []
+            self.truths[kind.name] = json.loads(truth.read_text()) if truth.exists() else []
             for peer in PEERS:
                 lines = read(table.store / "answers" / kind.name / f"{peer.name}.jsonl")
                 if lines:
-                    self.cells[kind.name, peer.name] = judge(lines, truths)
+                    self.lines[kind.name, peer.name] = lines
+                    self.cells[kind.name, peer.name] = judge(lines, self.truths[kind.name])
 
     def explain_empty(self, peer, kind):
         return peer.explain_lack(kind) or self.remarks["not run"]
@@ -126,13 +127,13 @@ class Page:
 
     def make_remarks(self, kind):
         """Each cell in which a peer is better has its line, or says that it has none."""
-        own, text = self.cells.get((kind.name, OWN)), ""
+        own, text = self.lines.get((kind.name, OWN)), ""
         known = self.remarks.get(kind.name, {})
         for peer in PEERS:
-            cell = self.cells.get((kind.name, peer.name))
-            if cell and own and not peer.name.startswith("twinmap"):
-                better = is_better(cell, own)
-                why = known.get(peer.name, "not explained yet")
+            lines = self.lines.get((kind.name, peer.name))
+            if lines and own and not peer.name.startswith("twinmap"):
+                better = list_better(lines, own, self.truths[kind.name])
+                why = known.get(peer.name, known.get("any", "not explained yet"))
                 text += f"- {peer.title} is better in {', '.join(better)}: {why}\n" if better else ""
         if known.get("all"):
             text += f"- {known['all']}\n"

@@ -18,7 +18,10 @@ ASKED = {
     "plain": "twinmap, `infer --joint`",
     "diagnosed": "twinmap, `diagnose`, its corrected model",
     "scipy": "SciPy `least_squares` on twinmap's simulations",
+    "figaroh": "FIGAROH, torque regression with friction and offset",
 }
+#: What is asked about some machines alone.
+ONLY = {"figaroh": ["emps"]}
 
 
 def repeat(option, values):
@@ -47,7 +50,7 @@ class RealMachine:
             answer = getattr(self, name)()
             if "predicted" not in answer:
                 values = ",".join(f"{key}={value!r}" for key, value in answer["values"].items())
-                answer["predicted"] = self.predict("model.yaml", "--with", values)
+                answer["predicted"] = self.predict(answer.get("model", "model.yaml"), "--with", values)
             file.write_text(json.dumps(answer))
             print(f"{self.folder.name}: {name}", flush=True)
         return json.loads(file.read_text())
@@ -103,10 +106,27 @@ class RealMachine:
         run(*command, *self.windows["fit"], env=self.environments.get_variables("plain"))
         return json.loads(out.read_text())
 
+    def figaroh(self):
+        out = self.folder / "figaroh.json"
+        command = [self.environments.get_python("figaroh"), HERE / "scripts/figaroh_emps.py"]
+        recording = self.folder / self.recording
+        run(*command, recording, out, *self.windows["fit"], env=self.environments.get_variables("figaroh"))
+        self.write_friction()
+        return {**json.loads(out.read_text()), "model": "friction.yaml"}
+
+    def write_friction(self):
+        """The model of EMPS with the two terms that FIGAROH fits besides, for its prediction."""
+        model = yaml.safe_load((self.folder / "model.yaml").read_text())
+        model["parameters"].update({"Fc": {"bounds": [0, 60]}, "offset": {"bounds": [-20, 20]}})
+        friction = {"coordinate": "q", "model": "regularised", "coulomb": "Fc", "onset_speed": 1e-3}
+        model["system"].update(friction=[friction])
+        model["system"]["force_laws"].append({"coordinate": "q", "force": "-offset"})
+        (self.folder / "friction.yaml").write_text(yaml.safe_dump(model, sort_keys=False))
+
 
 def measure(recordings, store, environments, asked):
     for name in asked:
-        for machine in MACHINES:
+        for machine in ONLY.get(name, MACHINES):
             RealMachine(machine, recordings, store, environments).ask(name)
 
 
