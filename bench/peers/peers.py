@@ -1,0 +1,102 @@
+"""The peers: the script of each, its setting, its environment, and the cases of which it says nothing, with the reason."""
+import dataclasses
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+
+
+@dataclasses.dataclass(frozen=True)
+class Peer:
+    name: str
+    title: str
+    script: str
+    environment: str
+    setting: str = ""
+    #: At most so many of a case.
+    machines: int = 40
+    #: Suffix of the model that it wants of each case in models/; "": twinmap's file.
+    model: str = ""
+    #: The cases that it is about, where these are not all.
+    only: tuple = ()
+    #: Case to reason, where more than the model is missing.
+    cannot: dict = dataclasses.field(default_factory=dict)
+
+    def find_model(self, kind):
+        return HERE / "models" / f"{kind.name}{self.model}" if self.model else kind.file
+
+    def explain_lack(self, kind):
+        """Why it is not asked about a case; "" where it is."""
+        if self.only and kind.name not in self.only:
+            return "not asked"
+        if kind.name in self.cannot:
+            return self.cannot[kind.name]
+        return "" if self.find_model(kind).exists() else "no model of the case was written for it"
+
+
+UNKNOWN = {"spikes": "a map is trained for a noise that is known"}
+ARM = {"seven_joint_arm": "not tried: 40 parameters"}
+PEERS = [
+    Peer("twinmap_infer", "twinmap, `infer FILE.yaml`", "twinmap_infer", "plain"),
+    Peer(
+        "twinmap_run",
+        "twinmap, a run, then `infer RUN`",
+        "twinmap_run",
+        "plain",
+        cannot={"seven_joint_arm": "the experiment says `inverse_map: none`", **UNKNOWN},
+    ),
+    Peer(
+        "twinmap_map",
+        "twinmap, a run, its map alone",
+        "twinmap_run",
+        "plain",
+        setting="map",
+        cannot={"seven_joint_arm": "the experiment says `inverse_map: none`", **UNKNOWN},
+    ),
+    Peer(
+        "twinmap_diagnose",
+        "twinmap, `diagnose`, then `infer corrected.yaml`",
+        "twinmap_diagnose",
+        "plain",
+        only=("lacking_friction",),
+    ),
+    Peer("scipy_twinmap", "SciPy `least_squares` on twinmap's simulations", "scipy_twinmap", "plain"),
+    Peer(
+        "scipy_ivp",
+        "SciPy `least_squares` on `solve_ivp`",
+        "scipy_ivp",
+        "plain",
+        machines=10,
+        model="_ode.py",
+        cannot={"seven_joint_arm": "its equations of motion were not written by hand"},
+    ),
+    Peer(
+        "mujoco",
+        "MuJoCo 4.0 `sysid`",
+        "mujoco_sysid",
+        "plain",
+        machines=10,
+        model="_mujoco.py",
+        cannot={
+            "servo_axis": "its actuators have no controller with states of its own",
+            "stick_slip": "its friction has no bristle",
+            "seven_joint_arm": "its joints have no friction that grows as tanh",
+        },
+    ),
+    Peer(
+        "pypesto", "pyPESTO, profiles, on twinmap's simulations", "pypesto_profiles", "plain", machines=10, cannot=ARM
+    ),
+    *[
+        Peer(
+            f"sbi_{count}",
+            f"sbi, NPE on {count} of twinmap's simulations",
+            "sbi_npe",
+            "torch",
+            setting=str(count),
+            machines=10,
+            cannot={**UNKNOWN, **ARM},
+        )
+        for count in (500, 2000, 10000)
+    ],
+    Peer("sklearn", "scikit-learn, a map alone", "sklearn_map", "plain", cannot={**UNKNOWN, **ARM}),
+    Peer("gpytorch", "GPyTorch, a map alone", "gpytorch_map", "torch", cannot={**UNKNOWN, **ARM}),
+]

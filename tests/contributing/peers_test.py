@@ -1,0 +1,67 @@
+"""The figures that bench/peers prints of answers beside true values, on hand-sized cases."""
+import os
+import sys
+import unittest
+from pathlib import Path
+
+SOURCE = Path(os.environ["TWINMAP_SOURCE_DIR"])
+sys.path.insert(0, str(SOURCE / "bench" / "peers"))
+from judge import compare, judge, list_better  # noqa: E402
+
+
+def answer(machine, mean, sd, warnings=(), intervals=None):
+    return {
+        "machine": machine,
+        "mean": [mean],
+        "sd": [sd],
+        "intervals95": [intervals or [[mean - 1.96 * sd, mean + 1.96 * sd]]],
+        "intervals50": [[[mean - 0.674 * sd, mean + 0.674 * sd]]],
+        "warnings": list(warnings),
+        "simulations": 100,
+        "seconds": 1.0,
+        "shared_simulations": 0,
+        "shared_seconds": 0.0,
+    }
+
+
+def truths(*values):
+    return [{"values": [value], "limits": [1.0]} for value in values]
+
+
+class Judge(unittest.TestCase):
+    def test_errors_are_over_the_limit(self):
+        cell = judge([answer(1, 0.67449, 2.0), answer(2, -0.67449, 2.0)], truths(0, 0))
+        self.assertAlmostEqual(cell.error, 1.0)
+        self.assertAlmostEqual(cell.sd, 2.0)
+        self.assertEqual((cell.covered95, cell.covered50), (1.0, 1.0))
+
+    def test_silent_is_far_and_without_a_word(self):
+        lines = [answer(1, 5.0, 1.0), answer(2, 5.0, 1.0, ["at a bound"]), answer(3, 3.0, 1.0)]
+        cell = judge(lines, truths(0, 0, 0))
+        self.assertEqual((cell.far, cell.silent, cell.warned), (2, 1, 1))
+
+    def test_an_infinite_sd_is_never_far(self):
+        lines = [answer(1, 1e9, float("inf"), intervals=[[float("-inf"), float("inf")]])]
+        cell = judge(lines, truths(0))
+        self.assertEqual((cell.silent, cell.covered95, cell.sd), (0, 1.0, float("inf")))
+
+    def test_either_of_two_intervals_holds(self):
+        cell = judge([answer(1, 0.0, 1.0, intervals=[[-3, -1], [1, 3]])], truths(2))
+        self.assertEqual(cell.covered95, 1.0)
+
+    def test_failures_are_counted(self):
+        cell = judge([answer(1, 0.0, 1.0), {"machine": 2, "failed": "no"}], truths(0, 0))
+        self.assertEqual((cell.asked, cell.answered, cell.failures), (2, 1, ["no"]))
+
+    def test_peers_are_compared_on_machines_of_both(self):
+        own = [answer(1, 0.1, 1.0), answer(2, 9.0, 1.0)]
+        self.assertEqual(list_better([answer(1, 0.1, 1.0)], own, truths(0, 0)), [])
+        self.assertIn("silent", list_better([answer(2, 0.1, 1.0)], own, truths(0, 0)))
+
+    def test_less_time_is_better(self):
+        quick = judge([dict(answer(1, 0.1, 1.0), seconds=0.5)], truths(0))
+        self.assertEqual(compare(quick, judge([answer(1, 0.1, 1.0)], truths(0))), ["time"])
+
+
+if __name__ == "__main__":
+    unittest.main()
