@@ -139,9 +139,7 @@ namespace {
 // log of the thresholds at which lives without a change raise .85 of the alarms that are stated, so that one
 // in twenty measurements may be bad (docs/benchmarks/tracking.md). Rows: ratios 0, .1, .316 and 1; columns: 1
 // in 100, 1000 and 10000. They do not depend on the number of parameters.
-constexpr std::size_t kRatioCount = 4, kLevelCount = 3;
-constexpr double kSlow = 0.1;
-constexpr std::array<double, kRatioCount> kRatioPlaces{0.0, 0.5, 0.76, 0.909};  // ratio / (ratio + kSlow)
+constexpr std::size_t kRatioCount = kRatioPlaces.size(), kLevelCount = 3;
 using Thresholds = std::array<std::array<double, kLevelCount>, kRatioCount>;
 constexpr Thresholds kOfKnown{{{26.5, 195, 1610}, {27, 141, 850}, {28.5, 76, 340}, {33.5, 47, 200}}};
 constexpr Thresholds kOfUnknown{{{16.5, 50, 165}, {20, 82, 590}, {26.5, 64, 340}, {32.5, 48, 400}}};
@@ -154,7 +152,7 @@ double calcLogThreshold(const std::array<double, kLevelCount>& of_levels, double
 
 /// decade: 0 of 1 in 100, 1 of 1 in 1000.
 double calcThreshold(const Thresholds& thresholds, double ratio, double decade) {
-  const double place = std::min(ratio / (ratio + kSlow), kRatioPlaces.back());
+  const double place = std::min(ratio / (ratio + kSlowRatio), kRatioPlaces.back());
   std::size_t below = 0;
   while (below + 2 < kRatioCount && kRatioPlaces[below + 1] < place) {
     ++below;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "kernels/tracking/belief.hpp"
@@ -49,6 +50,11 @@ void weighChanges(const ChangeEvidence& evidence, ChangeBank& bank);
 /// Shiryaev and Roberts' statistic: the sum of likelihood ratios over times, weighed over parameters (weights
 /// sum to 1). Without a change its mean grows by 1 a measurement.
 double calcShiryaevRoberts(const Model& model, const ChangeBank& bank);
+
+/// Places ratio / (ratio + kSlowRatio) of the walks that lives were simulated for, between which thresholds
+/// are interpolated.
+inline constexpr double kSlowRatio = 0.1;
+inline constexpr std::array<double, 4> kRatioPlaces{0.0, 0.5, 0.76, 0.909};
 
 /// Above which it is an alarm, to be false as often as the model says. It depends on how fast walks forget.
 /// ratios (p): each walk's standard deviation between two measurements over that of a measurement.

@@ -12,6 +12,7 @@ enum {
   RATES = TWINMAP_TRACK_RATES,
   OCTAVES = TWINMAP_TRACK_OCTAVES,
   PARTS = (OCTAVES - 1) / (RATES - 1), /* of an octave */
+  PLACES = TWINMAP_TRACK_PLACES,
   WINDOW = TWINMAP_TRACK_WINDOW
 };
 
@@ -603,8 +604,8 @@ static void weigh_changes(twinmap_track *track, double log_bad, int is_used)
         widen_change(track, change);
       }
       weigh_change(track, log_bad, is_used, change);
-      if (is_new && change->log_ratio > 3.0) {
-        change->log_ratio = 3.0; /* one measurement alone may be bad in any way */
+      if (is_new && change->log_ratio > 0.7) {
+        change->log_ratio = 0.7; /* one measurement alone may be bad in any way */
       }
     }
   }
@@ -627,24 +628,43 @@ static double calc_share(const twinmap_track *track, int m, int j, double larges
   return change_weight[j] * exp(track->changes[m][j].log_ratio - largest);
 }
 
-/* Shiryaev and Roberts' sum over its threshold: 1 is an alarm. */
-static double calc_statistic(twinmap_track *track)
+static double sum_shares(const twinmap_track *track, double largest)
 {
-  const double largest = find_largest(track);
-  double rates[TWINMAP_PARAMETERS], sum = 0.0, mean = 0.0;
+  double sum = 0.0;
   int m, j;
   for (m = 0; m < track->supposed; ++m) {
     for (j = 0; j < P; ++j) {
       sum += calc_share(track, m, j, largest);
     }
   }
+  return sum;
+}
+
+/* Of a walk of that ratio, between those that lives were simulated for. */
+static double calc_threshold(int j, double ratio)
+{
+  const double *logs = log_thresholds + j * PLACES;
+  const double place = fmin(ratio / (ratio + threshold_ratio), threshold_places[PLACES - 1]);
+  int below = 0;
+  double share;
+  while (below + 2 < PLACES && threshold_places[below + 1] < place) {
+    ++below;
+  }
+  share = (place - threshold_places[below]) / (threshold_places[below + 1] - threshold_places[below]);
+  return exp((1.0 - share) * logs[below] + share * logs[below + 1]);
+}
+
+/* Shiryaev and Roberts' sum over its threshold: 1 is an alarm. */
+static double calc_statistic(twinmap_track *track)
+{
+  const double largest = find_largest(track);
+  double rates[TWINMAP_PARAMETERS], mean = 0.0;
+  int j;
   calc_rates(track, 0.0, rates);
   for (j = 0; j < P; ++j) {
-    const double ratio = sqrt(rates[j] * track->interval / track->variances[j]);
-    const double of_known = 53.0 + 222.0 / (1.0 + ratio / 0.11), of_unknown = 1.2 * of_known;
-    mean += change_weight[j] * (!is_unknown[j] ? of_known : of_unknown < 125.0 ? of_unknown : 125.0);
+    mean += change_weight[j] * calc_threshold(j, sqrt(rates[j] * track->interval / track->variances[j]));
   }
-  return exp(largest) * sum / change_weights / (mean / change_weights * alarm_factor);
+  return exp(largest) * sum_shares(track, largest) / mean;
 }
 
 /* Which it most likely is. The place of it among the measurements that changes are supposed before. */
@@ -691,24 +711,89 @@ static int describe_change(const twinmap_track *track, twinmap_track_answer *ans
   return place;
 }
 
-/* The belief with the change, and rates weighed as before it. */
-static void confirm_change(twinmap_track *track, int j, int place)
-{
-  const supposed_t *change = &track->changes[place][j];
-  int a, b;
-  for (a = 0; a < N; ++a) {
-    track->belief.mean[a] += change->size * change->signature[a];
-    for (b = 0; b < N; ++b) {
-      track->belief.covariance[a * N + b] += change->variance * change->signature[a] * change->signature[b];
-    }
-  }
 #if TWINMAP_TRACK_UNKNOWN
-  memcpy(track->log_weights, track->past_weights[place], sizeof track->log_weights);
-  for (a = 0; a < UNKNOWN; ++a) {
-    for (b = 0; b < RATES; ++b) {
-      track->filters[a][b] = track->belief;
+/* log of a mixture of two distributions over rates, into the second. */
+static void mix(const double *log_one, double *log_other, double share_of_one)
+{
+  double mixed[TWINMAP_TRACK_RATES], largest_one = log_one[0], largest_other = log_other[0];
+  double sum_one = 0.0, sum_other = 0.0, largest = 0.0;
+  int g;
+  for (g = 1; g < RATES; ++g) {
+    largest_one = fmax(largest_one, log_one[g]);
+    largest_other = fmax(largest_other, log_other[g]);
+  }
+  for (g = 0; g < RATES; ++g) {
+    sum_one += exp(log_one[g] - largest_one);
+    sum_other += exp(log_other[g] - largest_other);
+  }
+  for (g = 0; g < RATES; ++g) {
+    mixed[g] = share_of_one * exp(log_one[g] - largest_one) / sum_one +
+               (1.0 - share_of_one) * exp(log_other[g] - largest_other) / sum_other;
+    largest = fmax(largest, mixed[g]);
+  }
+  for (g = 0; g < RATES; ++g) {
+    log_other[g] = log(fmax(mixed[g] / largest, 1e-300));
+  }
+}
+#endif
+
+/* The belief over all supposed changes and none, with odds that are even at the threshold. */
+static void add_changes(twinmap_track *track, double probability)
+{
+  const double largest = find_largest(track), total = sum_shares(track, largest);
+  belief_t *belief = &track->belief;
+  double mean[TWINMAP_TRACK_STATES];
+  int m, j, a, b;
+  for (a = 0; a < N; ++a) {
+    mean[a] = 0.0;
+  }
+  for (m = 0; m < track->supposed; ++m) {
+    for (j = 0; j < P; ++j) {
+      const supposed_t *change = &track->changes[m][j];
+      const double own = probability * calc_share(track, m, j, largest) / total;
+      for (a = 0; a < N; ++a) {
+        mean[a] += own * change->size * change->signature[a];
+      }
     }
   }
+  for (m = 0; m < track->supposed; ++m) {
+    for (j = 0; j < P; ++j) {
+      const supposed_t *change = &track->changes[m][j];
+      const double own = probability * calc_share(track, m, j, largest) / total;
+      for (a = 0; a < N; ++a) {
+        const double off_a = change->size * change->signature[a] - mean[a];
+        for (b = 0; b < N; ++b) {
+          belief->covariance[a * N + b] += own * (change->variance * change->signature[a] * change->signature[b] +
+                                                  off_a * (change->size * change->signature[b] - mean[b]));
+        }
+      }
+    }
+  }
+  for (a = 0; a < N; ++a) {
+    for (b = 0; b < N; ++b) {
+      belief->covariance[a * N + b] += (1.0 - probability) * mean[a] * mean[b];
+    }
+    belief->mean[a] += mean[a];
+  }
+}
+
+/* Rates are as before the likeliest change, or as without any. place: of that one. */
+static void confirm_change(twinmap_track *track, int place, double odds)
+{
+  const double probability = odds / (1.0 + odds);
+  add_changes(track, probability);
+#if TWINMAP_TRACK_UNKNOWN
+  {
+    int u, g;
+    for (u = 0; u < UNKNOWN; ++u) {
+      mix(track->past_weights[place][u], track->log_weights[u], probability);
+      for (g = 0; g < RATES; ++g) {
+        track->filters[u][g] = track->belief;
+      }
+    }
+  }
+#else
+  (void)place;
 #endif
   track->supposed = track->run_of_bad = 0;
 }
@@ -781,10 +866,10 @@ static void move_to(twinmap_track *track, double time)
 /* log of the odds that a measurement is bad, by the length of its innovation. */
 static double calc_log_bad(double chi_square, int degrees)
 {
-  const double length = sqrt(fmax(chi_square, 1e-12));
-  const double log_bad = log(2.0 * 10.0 / pi) - log(10.0 * 10.0 + chi_square);
+  const double square = fmax(chi_square, degrees); /* nearer than noise is as good as that */
+  const double log_bad = log(2.0 * 10.0 / pi) - log(10.0 * 10.0 + square);
   const double log_good =
-      (degrees - 1.0) * log(length) - 0.5 * chi_square - (0.5 * degrees - 1.0) * log_two - log_gamma_half[degrees];
+      0.5 * (degrees - 1.0) * log(square) - 0.5 * square - (0.5 * degrees - 1.0) * log_two - log_gamma_half[degrees];
   return log(bad_share / (1.0 - bad_share)) + log_bad - log_good;
 }
 
@@ -836,7 +921,7 @@ static void look_for_changes(twinmap_track *track, twinmap_track_answer *answer)
   }
   if (answer->alarm_statistic >= 1.0) {
     answer->alarm = TWINMAP_TRACK_CHANGE;
-    confirm_change(track, answer->parameter, describe_change(track, answer));
+    confirm_change(track, describe_change(track, answer), answer->alarm_statistic);
   } else if (track->run_of_bad == 4) {
     answer->alarm = TWINMAP_TRACK_ANEW;
     begin_anew(track);

@@ -62,12 +62,12 @@ Operations countOperations(const Sizes& s) {
   const double likelihood =
       3.0 * std::pow(p * (p + 1.0) / 2.0, 2) + 6.0 * s.sweeps * p * p * (p - 1.0) + 3.0 * p * p * p;
   const double filters = beliefs * (p * (2.0 * n * n + 4.0 * n) + 2.0 * p * n);
-  const double changed = (changes + p) * p * (2.0 * n + 8.0) + beliefs * 2.0 * n * n;
+  const double changed = (changes + p) * p * (2.0 * n + 8.0) + changes * (4.0 * n * n + 2.0 * n);
   const double rates = 5.0 * s.unknown * s.octaves * 10.0;
   Operations operations;
   operations.multiply_adds = likelihood + filters + changed + rates;
-  operations.functions = s.sweeps * p * (p - 1.0) * 2.0 + beliefs * p + changes * (p + 4.0) + 4.0 * changes +
-                         5.0 * s.unknown * (s.octaves + 1.0) + 12.0 * p;
+  operations.functions = s.sweeps * p * (p - 1.0) * 2.0 + beliefs * p + changes * (p + 4.0) + 5.0 * changes +
+                         5.0 * s.unknown * (s.octaves + 1.0) + 3.0 * s.unknown * s.rates + 14.0 * p;
   return operations;
 }
 
@@ -116,7 +116,7 @@ What it does not do, and `twinmap track` does:
 - Rivals of a change, forecasts of limits, history.
 - Statuses other than model_mismatch that keep a measurement from updating: they need the simulator.
 - Where points that lie apart explain a measurement alike, their common mean and covariance are taken; `twinmap track`
-  takes the point nearest to the belief.
+  weighs each by the belief.
 )";
 
 }  // namespace

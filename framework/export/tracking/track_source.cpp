@@ -93,7 +93,6 @@ void addDrifts(const tracking::Model& model, CTables& tables) {
   }
   tables.addWide("change_stddev", stddevs, "Of a sudden change; 0: three of a measurement.");
   tables.addWide("change_weight", weights, "How much likelier the parameter changes than others.");
-  tables.addNumber("change_weights", weights.sum(), "Their sum.");
 }
 
 void addRates(const std::vector<Index>& unknown, CTables& tables) {
@@ -120,17 +119,30 @@ void addFollows(const tracking::Model& model, CTables& tables) {
   tables.addInts("follow_condition", conditions, "The condition that it follows.");
 }
 
+/// Of each parameter, at the ratios that lives were simulated for, at the model's own false alarms.
 void addThresholds(const tracking::Model& model, CTables& tables) {
-  tracking::Model usual = model;
-  usual.false_alarms = 1e-3;
-  const VectorXd still = VectorXd::Zero(model.countParameters());
-  VectorXd log_gammas(model.countParameters() + 1);
+  const Index p = model.countParameters(), places = tracking::kRatioPlaces.size();
+  MatrixXd logs(p, places);
+  for (Index j = 0; j < p; ++j) {
+    tracking::Model alone = model;
+    alone.drifts = {model.drifts[static_cast<std::size_t>(j)]};
+    alone.drifts.front().change_weight = 1.0;
+    for (Index i = 0; i < places; ++i) {
+      const double place = tracking::kRatioPlaces[static_cast<std::size_t>(i)];
+      const double ratio = tracking::kSlowRatio * place / (1.0 - place);
+      logs(j, i) = std::log(calcThreshold(alone, VectorXd::Constant(1, ratio)));
+    }
+  }
+  VectorXd log_gammas(p + 1);
   log_gammas[0] = 0.0;
   for (Index k = 1; k < log_gammas.size(); ++k) {
     log_gammas[k] = std::lgamma(0.5 * static_cast<double>(k));
   }
-  tables.addNumber("alarm_factor", calcThreshold(model, still) / calcThreshold(usual, still),
-                   "Of the threshold, over that of one false alarm in 1000 measurements.");
+  tables.addWide("log_thresholds", flattenRows(logs),
+                 "Of each parameter, at places of the ratio of its walk.");
+  tables.addWide("threshold_places", Eigen::Map<const VectorXd>(tracking::kRatioPlaces.data(), places),
+                 "ratio / (ratio + threshold_ratio).");
+  tables.addNumber("threshold_ratio", tracking::kSlowRatio, "Of a slow walk.");
   tables.addNumber("hardly_informative", 1.0 / (kUninformativeShare * kUninformativeShare) - 1.0,
                    "Information, over the prior's, below which a direction says nothing.");
   tables.addWide("log_gamma_half", log_gammas, "log Gamma(k / 2).");
@@ -147,6 +159,7 @@ CSizes listSizes(const tracking::Model& model, std::size_t unknown) {
           {"TRACK_OCTAVES", size(listSquares().size()), "rates that are weighed, of each"},
           {"TRACK_WINDOW", static_cast<long>(tracking::kChangeWindow),
            "measurements back that changes are supposed"},
+          {"TRACK_PLACES", static_cast<long>(tracking::kRatioPlaces.size()), "of thresholds"},
           {"TRACK_SWEEPS", kSweeps, "of rotations, at most"}};
 }
 
