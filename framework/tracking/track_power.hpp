@@ -24,9 +24,9 @@ struct AlarmDelay {
 std::vector<AlarmDelay> calcAlarmDelays(Eigen::Index parameters, double false_alarms, std::uint64_t seed);
 
 /// track_power.csv (docs/reference/files.md): calcAlarmDelays() at one false alarm in 1000, in the units of
-/// each parameter by the estimates of a run's test samples. A step is seen against what is known of its
-/// parameter where all others are as they were, so that a measurement's standard deviation is the one given
-/// the others, at the median of the samples. Sizes beyond the width of the bounds are left out.
+/// each parameter by the estimates of a run's test samples. Standard deviations are those of a measurement
+/// given all other parameters, which are as they were, at the median of the samples. Sizes beyond the width
+/// of the bounds are left out.
 std::string makeTrackPowerCsv(const std::vector<ParameterSpec>& parameters, const Estimates& tests,
                               std::uint64_t seed);
 
