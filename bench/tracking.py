@@ -217,7 +217,7 @@ def write_delays(store, seed):
         "one constant": {},
         "four constants": {"parameters": 4},
         "walk of .1, known": {"told": 0.1, "walk": 0.1},
-        "walk of .316, unknown": {"told": -1, "walk": 0.316, "lives": 60},
+        "walk of .316, unknown (60 lives)": {"told": -1, "walk": 0.316, "lives": 60},
         "constant under a temperature effect of 10": {"temperature": 10},
     }
     for name, options in rows.items():
@@ -236,7 +236,8 @@ def write_machines(store, machines):
     yield "\n## Lives of simulated machines\n"
     yield f"Three mechanisms of `bench/framework/tracking`, two parameters each and an initial state that is not known; {machines} machines of"
     yield "300 measurements a row, each simulated, inferred by the run's estimator and tracked as by `twinmap track`. Updates: share of"
-    yield "measurements that update. Alarms: of lives without a step, a measurement.\n"
+    yield "measurements that update. Alarms: of lives without a step. Smoothed bands of what is constant hold or fail whole lives long, so that"
+    yield f"their shares are those of {2 * machines} numbers.\n"
     yield "| mechanism | life | filtered | smoothed | rate, 2.5 - 97.5 % | within 2 | alarms in 1000 | delay, median | 95 % | updates |"
     yield "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|"
     for mechanism in MECHANISMS:
