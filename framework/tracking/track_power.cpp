@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kLives = 40, kBefore = 50, kLongest = 100;
+constexpr int kLives = 20, kBefore = 30, kLongest = 100;
 constexpr double kMeasured = 0.01;  // of the prior's width: it is forgotten after the first measurement
 
 tracking::Model makeModel(Index parameters, double false_alarms) {

@@ -11,7 +11,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Chi-square that sums of the columns (n x c) leave of values of weights w (Gram and Schmidt); infinite
+/// Chi-square that sums of the columns (n x c) leave of values of weights w (Gram and Schmidt). Infinite
 /// where the second column does not differ from the first.
 double calcLeft(MatrixXd columns, VectorXd values, const VectorXd& weights) {
   constexpr double kVaries = 1e-12;

@@ -115,7 +115,9 @@ void weigh(const ChangeEvidence& evidence, double without, Supposed& change) {
 }  // namespace
 
 void weighChanges(const ChangeEvidence& evidence, ChangeBank& bank) {
-  constexpr double kAlone = 0.7;  // log(2)
+  // log(2): with 20, one in twenty bad measurements raise half as many alarms again at rates of .3, and steps
+  // are found no sooner (docs/benchmarks/tracking.md)
+  constexpr double kAlone = 0.7;
   const double without = std::max(0.0, evidence.log_bad) + std::log1p(std::exp(-std::abs(evidence.log_bad)));
   for (Supposed& change : bank.changes) {
     const bool is_new = &bank.changes.back() - &change < evidence.parameters;

@@ -262,8 +262,8 @@ VectorXd mix(const VectorXd& log_one, const VectorXd& log_other, double share_of
   return (mixed / mixed.maxCoeff()).max(1e-300).log();
 }
 
-/// All that is believed is a mixture of the changes that are supposed and of none, with odds that are even at
-/// the threshold, where an alarm is as likely false as true. Rates are as before the likeliest change, or as
+/// What is believed becomes a mixture of the changes that are supposed and of none. Odds are even at the
+/// threshold, where an alarm is as likely false as true. Rates are as before the likeliest change, or as
 /// without any.
 void Tracker::confirm(const Change& change, double odds) {
   const double probability = odds / (1.0 + odds);

@@ -7,6 +7,7 @@
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/experiment/tracking_spec.hpp"
 #include "framework/tracking/track_space.hpp"
+#include "kernels/tracking/belief.hpp"
 #include "kernels/tracking/model.hpp"
 
 namespace twinmap {
@@ -14,7 +15,7 @@ namespace twinmap {
 /// How parameters move over time, as what leaves twinmap sees it.
 struct ExportedTracking {
   TrackSpace space;
-  NormalBelief prior;
+  tracking::Belief prior;
   tracking::Model model;
   std::vector<std::string> conditions;  ///< columns whose means are given with a measurement
 };

@@ -108,7 +108,7 @@ TrackRecord makeRecord(const Lived& lived, const ExportedTracking& tracking) {
     record.measurement.rows.resize(0, p);
     record.measurement.variances = VectorXd::Constant(p, std::numeric_limits<double>::infinity());
   } else {
-    record.measurement = makeTrackMeasurement(lived.estimate, tracking.space, tracking.prior, tracking.prior);
+    record.measurement = makeTrackMeasurement(lived.estimate, tracking.space, tracking.prior);
   }
   record.measurement.time = lived.time;
   record.measurement.conditions = lived.conditions;
