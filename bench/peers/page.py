@@ -10,8 +10,8 @@ from peers import HERE, PEERS
 OWN = "twinmap_infer"
 HEAD = """# Beside what a user would take instead
 
-Written by `bench/peers/run.py BUILD STORE --page docs/benchmarks/peers.md`; a call that was stopped goes on. Each case is drawn {most}
-times by seed, simulated by twinmap, and given to all as the same CSV files. Scripts are in `bench/peers/scripts`, models in
+Written by `bench/peers/run.py BUILD STORE --page docs/benchmarks/peers.md`; a call that was stopped goes on. Each case is drawn up
+to {most} times by seed, simulated by twinmap, and given to all as the same CSV files; a row says of how many machines it is. Scripts are in `bench/peers/scripts`, models in
 `bench/peers/models`, explanations in `bench/peers/remarks.yaml`.
 
 {versions}
@@ -127,13 +127,13 @@ class Page:
 
     def make_remarks(self, kind):
         """Each cell in which a peer is better has its line, or says that it has none."""
-        own, text = self.lines.get((kind.name, OWN)), ""
-        known = self.remarks.get(kind.name, {})
+        known, text = self.remarks.get(kind.name, {}), ""
         for peer in PEERS:
-            lines = self.lines.get((kind.name, peer.name))
+            lines, own = (self.lines.get((kind.name, name)) for name in (peer.name, peer.beside))
             if lines and own and not peer.name.startswith("twinmap"):
                 better = list_better(lines, own, self.truths[kind.name])
-                why = known.get(peer.name, known.get("any", "not explained yet"))
+                general = self.remarks["peers"].get(peer.name, known.get("any", "not explained yet"))
+                why = known.get(peer.name, general)
                 text += f"- {peer.title} is better in {', '.join(better)}: {why}\n" if better else ""
         if known.get("all"):
             text += f"- {known['all']}\n"

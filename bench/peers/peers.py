@@ -16,6 +16,8 @@ class Peer:
     machines: int = 40
     #: Suffix of the model that it wants of each case in models/; "": twinmap's file.
     model: str = ""
+    #: What of twinmap it is compared with.
+    beside: str = "twinmap_infer"
     #: The cases that it is about, where these are not all.
     only: tuple = ()
     #: Case to reason, where more than the model is missing.
@@ -93,10 +95,13 @@ PEERS = [
             "torch",
             setting=str(count),
             machines=10,
+            beside="twinmap_map",
             cannot={**UNKNOWN, **ARM},
         )
         for count in (500, 2000, 10000)
     ],
-    Peer("sklearn", "scikit-learn, a map alone", "sklearn_map", "plain", cannot={**UNKNOWN, **ARM}),
-    Peer("gpytorch", "GPyTorch, a map alone", "gpytorch_map", "torch", cannot={**UNKNOWN, **ARM}),
+    Peer(
+        "sklearn", "scikit-learn, a map alone", "sklearn_map", "plain", beside="twinmap_map", cannot={**UNKNOWN, **ARM}
+    ),
+    Peer("gpytorch", "GPyTorch, a map alone", "gpytorch_map", "torch", beside="twinmap_map", cannot={**UNKNOWN, **ARM}),
 ]
