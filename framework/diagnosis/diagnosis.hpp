@@ -35,8 +35,8 @@ struct AveragedEstimate {
 };
 
 struct Diagnosis {
-  double level = 0.01;     ///< DiagnosisOptions::level
-  std::size_t shared = 0;  ///< parameters of the machine before any term, the first of `corrected`
+  double level = kMismatchLevel;  ///< DiagnosisOptions::level
+  std::size_t shared = 0;         ///< parameters of the machine before any term, the first of `corrected`
   ExplainedFit before;
   std::vector<DiagnosisStep>
       steps;                     ///< those that found a term, then the one that found none, if it was made

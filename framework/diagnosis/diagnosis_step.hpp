@@ -7,13 +7,14 @@
 
 #include "framework/diagnosis/candidates/term_candidate.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
+#include "framework/estimation/levels.hpp"
 
 namespace twinmap {
 
 /// What a diagnosis is held to.
 struct DiagnosisOptions {
   /// Share of models without a fault for which a term is found (false discoveries).
-  double level = 0.01;
+  double level = kMismatchLevel;
   int max_terms = 3;
   /// Terms to take whatever the tests say, one after the other; then no others are sought.
   std::vector<std::string> accepted{};

@@ -7,6 +7,7 @@
 
 #include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -18,11 +19,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-MatrixXd invert(const MatrixXd& matrix) {
-  return linalg::solveCholesky(linalg::calcCholesky(matrix).lower,
-                               MatrixXd::Identity(matrix.rows(), matrix.cols()));
-}
 
 /// The machine's parameters are known settings, and what was nuisance is sought.
 ExperimentSpec holdParameters(const ExperimentSpec& experiment) {
@@ -41,9 +37,8 @@ ExperimentSpec holdParameters(const ExperimentSpec& experiment) {
 
 /// The centre of the box and points all over it: from one alone, an angle may end a turn or a summit away.
 MatrixXd makeStarts(const std::vector<ParameterSpec>& unknown) {
-  constexpr Index kStarts = 16;
-  MatrixXd starts =
-      drawSobol(static_cast<int>(unknown.size()), kStarts, RandomStream(1, RandomPurpose::kPosterior), 0, 0);
+  MatrixXd starts = drawSobol(static_cast<int>(unknown.size()), BasinSearchOptions{}.scouts,
+                              RandomStream(1, RandomPurpose::kPosterior), 0, 0);
   starts = calcWidths(unknown).asDiagonal() * starts;
   starts.colwise() += calcLowerBounds(unknown);
   starts.col(0) = calcBoxCenter(unknown);
@@ -131,7 +126,8 @@ void setPredictiveTest(const VectorXd& residual, const MatrixXd& jacobian, const
   const MatrixXd machine_part = right.rightCols(p);
   // (I + J S J')^-1 by Woodbury's identity
   const VectorXd projected = machine_part.transpose() * left;
-  const MatrixXd inner = invert(machine.covariance) + machine_part.transpose() * machine_part;
+  const MatrixXd inner =
+      linalg::invertPositiveDefinite(machine.covariance) + machine_part.transpose() * machine_part;
   prediction.chi_square =
       left.squaredNorm() -
       projected.dot(VectorXd(linalg::solveCholesky(linalg::calcCholesky(inner).lower, projected)));
@@ -174,10 +170,9 @@ KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatur
     return {posterior.mean.head(p), posterior.covariance.topLeftCorner(p, p)};
   }
   const VectorXd half_widths = 0.5 * calcWidths(problem.getUnknown());
-  const MatrixXd scaled = problem.linearize(posterior.best).jacobian * half_widths.asDiagonal();
-  MatrixXd information = scaled.transpose() * scaled;
-  information.diagonal().array() += kHalfWidthInformation;
-  const MatrixXd covariance = half_widths.asDiagonal() * invert(information) * half_widths.asDiagonal();
+  const BoundedInformation information(problem.linearize(posterior.best).jacobian, half_widths);
+  const MatrixXd covariance =
+      half_widths.asDiagonal() * information.calcCovariance() * half_widths.asDiagonal();
   return {posterior.best.head(p), covariance.topLeftCorner(p, p)};
 }
 

@@ -22,8 +22,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kLevel = 0.01;  // DiagnosisOptions::level
-
 /// What explains a measurement best, as far as is known: a point, and by how much it misses.
 struct KnownFit {
   VectorXd point;  ///< u; empty where nothing is known
@@ -76,12 +74,11 @@ CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& rec
 /// The one with the largest evidence by a fit, of the three best that stand out; null of none.
 const RankedTerm* fitBest(const CurrentFit& current, const RecordedFeatures& recording,
                           const ScoredCandidates& scored, Index p, std::vector<RankedTerm>& ranked) {
-  constexpr std::size_t kFitted = 3;
-  ranked.resize(std::min(ranked.size(), kFitted), RankedTerm{{}});
+  ranked.resize(std::min(ranked.size(), kFittedOfBest), RankedTerm{{}});
   const RankedTerm* best = nullptr;
   for (RankedTerm& one : ranked) {
-    if (one.finding.p_value < kLevel) {
-      fitRanked(current, recording, scored, p, kLevel, one);
+    if (one.finding.p_value < kMismatchLevel) {
+      fitRanked(current, recording, scored, p, kMismatchLevel, one);
       best = one.finding.fitted && (best == nullptr || hasMoreEvidence(one, *best)) ? &one : best;
     }
   }
@@ -134,7 +131,7 @@ std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored,
   const auto p = static_cast<Index>(parameters.size());
   const VectorXd most = calcWidths(parameters).cwiseQuotient(scored.stddevs.head(p));
   std::optional<UnnoticedTerm> worst;
-  for (const BlindSpot& spot : calcBlindSpots(scored, p, kLevel)) {
+  for (const BlindSpot& spot : calcBlindSpots(scored, p, kMismatchLevel)) {
     if (!std::isfinite(spot.noticed) || spot.candidate.has_states) {
       continue;
     }
@@ -197,7 +194,7 @@ ModelTest testTerms(const ExperimentSpec& experiment, const RecordedFeatures& re
   }
   CurrentFit current{experiment, known.point, known.chi_square, known.degrees};
   std::vector<RankedTerm> ranked = rankTerms(scored, current, p);
-  if (ranked.empty() || !(ranked.front().finding.p_value < kLevel)) {
+  if (ranked.empty() || !(ranked.front().finding.p_value < kMismatchLevel)) {
     return test;
   }
   current = fitFrom(experiment, recordings, known.point);

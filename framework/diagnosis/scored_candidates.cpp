@@ -10,8 +10,8 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/source_location.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -56,29 +56,12 @@ std::vector<ModelSizes> calcTrialSizes(const ExperimentSpec& experiment, const R
   return sizes;
 }
 
-/// All columns but `count` from `first` on.
-std::vector<Index> listOthers(Index columns, Index first, Index count) {
-  std::vector<Index> others;
-  for (Index i = 0; i < columns; ++i) {
-    if (i < first || i >= first + count) {
-      others.push_back(i);
-    }
-  }
-  return others;
-}
-
 /// The starts of a search: without the term, and with what its score says of all parameters.
 MatrixXd makeTermStarts(const VectorXd& point, const AugmentedExperiment& augmented, Index p,
                         const TermScore& score, const TermCandidate& candidate) {
-  VectorXd added(augmented.added);
-  for (std::size_t i = 0; i < candidate.own_scales.size(); ++i) {
-    added[static_cast<Index>(i) + 1] = candidate.own_scales[i].value;
-  }
-  added[0] = 0.0;
-  MatrixXd starts(point.size() + added.size(), 2);
-  starts.col(0) = insertAdded(point, p, added);
-  added[0] = score.estimate;
-  starts.col(1) = insertAdded(point + score.shifts, p, added);
+  MatrixXd starts(point.size() + augmented.added, 2);
+  starts.col(0) = insertAdded(point, p, candidate.listValues(0.0));
+  starts.col(1) = insertAdded(point + score.shifts, p, candidate.listValues(score.estimate));
   return starts;
 }
 
@@ -175,14 +158,6 @@ std::vector<TermCandidate> listAll(const ExperimentSpec& experiment, const Recor
 
 }  // namespace
 
-MatrixXd calcBoundedCovariance(const MatrixXd& jacobian, const VectorXd& half_widths) {
-  const MatrixXd scaled = jacobian * half_widths.asDiagonal();
-  MatrixXd information = scaled.transpose() * scaled;
-  information.diagonal().array() += kHalfWidthInformation;
-  return linalg::solveCholesky(linalg::calcCholesky(information).lower,
-                               MatrixXd::Identity(information.rows(), information.cols()));
-}
-
 LinearizedRecordings addScalePriors(const LinearizedRecordings& linear, Index first,
                                     const TermCandidate& candidate, const VectorXd& point) {
   const auto scales = static_cast<Index>(candidate.own_scales.size());
@@ -266,8 +241,8 @@ ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const Recorde
   }
   scored.test = std::make_unique<ScoreTest>(linear.residual, linear.jacobian, terms);
   const VectorXd half_widths = 0.5 * calcWidths(unknown);
-  scored.stddevs =
-      calcBoundedCovariance(linear.jacobian, half_widths).diagonal().cwiseSqrt().cwiseProduct(half_widths);
+  const MatrixXd covariance = BoundedInformation(linear.jacobian, half_widths).calcCovariance();
+  scored.stddevs = covariance.diagonal().cwiseSqrt().cwiseProduct(half_widths);
   for (Index k = 0; k < terms.cols(); ++k) {
     scored.scores.push_back(scored.test->calcScore(k, scored.candidates[static_cast<std::size_t>(k)].size));
     scored.tested += scored.scores.back().visible ? 1 : 0;
@@ -277,10 +252,9 @@ ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const Recorde
 
 FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const TermCandidate& candidate, const TermScore& score, const VectorXd& point) {
-  // far enough for a fit that the linear model underestimates; the posterior's bounds follow from its end
-  constexpr double kAbove = 10.0, kStddevs = 20.0;
+  constexpr double kStddevs = 20.0;  // the posterior's bounds follow from the fit's end
   const double largest =
-      std::max({candidate.size, kAbove * std::abs(score.estimate), kStddevs * score.stddev});
+      std::max({candidate.size, kAboveScore * std::abs(score.estimate), kStddevs * score.stddev});
   FittedTerm fitted;
   fitted.augmented = addTerm(experiment, candidate, largest);
   const auto p = static_cast<Index>(experiment.model.parameters.size());

@@ -41,6 +41,10 @@ void requireCandidates(const CandidateChoice& choice, const ExperimentSpec& expe
 ScoredCandidates scoreCandidates(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                  const Eigen::VectorXd& point, const CandidateChoice& choice = {});
 
+/// So many times what its score estimates a coefficient may be: far enough for a fit of which the linear
+/// model says too little.
+constexpr double kAboveScore = 10.0;
+
 /// A model with the term at its best fit.
 struct FittedTerm {
   AugmentedExperiment augmented;
@@ -50,10 +54,6 @@ struct FittedTerm {
   double cautious_stddev = 0.0;         ///< ScoreTest::calcCautiousStddev
   double log_evidence_of_scales = 0.0;  ///< what the freedom of own scales costs, at most 0
 };
-
-/// The covariance of parameters with the derivatives `jacobian` (n x u), their bounds as weak information, in
-/// half widths of these (u).
-Eigen::MatrixXd calcBoundedCovariance(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& half_widths);
 
 /// The derivatives with what is known of a term's own scales before any recording, as further residuals:
 /// their priors are uniform in the logarithm. first: column of its coefficient, before those of its scales.

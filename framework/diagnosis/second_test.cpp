@@ -9,6 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/diagnosis/problem/score_test.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -67,7 +68,7 @@ double calcToldChiSquare() {
 VectorXd calcLargestChange(const FittedTerm& fitted, const FittedTest& first, const FittedTest& second) {
   const std::vector<ParameterSpec>& parameters = fitted.augmented.experiment.model.parameters;
   const VectorXd half_widths = 0.5 * calcWidths(parameters);
-  const MatrixXd covariance = calcBoundedCovariance(first.shared, half_widths);
+  const MatrixXd covariance = BoundedInformation(first.shared, half_widths).calcCovariance();
   const MatrixXd root = half_widths.asDiagonal() * linalg::calcCholesky(covariance).lower;
   const MatrixXd moves = second.shared * root;
   VectorXd change = root * linalg::calcSymmetricEigen(moves.transpose() * moves).vectors.rightCols(1);

@@ -7,6 +7,7 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/diagnosis/held_out.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -21,14 +22,11 @@ namespace {
 /// log of the share of the bounds that the posterior takes, as a normal distribution within a wide one of the
 /// bounds' half-widths.
 double calcLogOccupied(const RecordingsProblem& problem, const VectorXd& best) {
-  const VectorXd half_widths = 0.5 * calcWidths(problem.getUnknown());
-  const MatrixXd scaled = problem.linearize(best).jacobian * half_widths.asDiagonal();
-  MatrixXd information = scaled.transpose() * scaled;
-  information.diagonal().array() += kHalfWidthInformation;
-  const double log_determinant = 2.0 * linalg::calcCholesky(information).lower.diagonal().array().log().sum();
+  const BoundedInformation information(problem.linearize(best).jacobian,
+                                       0.5 * calcWidths(problem.getUnknown()));
   const auto u = static_cast<double>(best.size());
   // integral of exp(-d' H d / 2) over the bounds' volume, 2 in each direction
-  return 0.5 * u * std::log(2.0 * M_PI) - 0.5 * log_determinant - u * std::log(2.0);
+  return 0.5 * u * std::log(2.0 * M_PI) - 0.5 * information.calcLogDeterminant() - u * std::log(2.0);
 }
 
 /// The log determinants of the noise of recordings whose excitation is noisy: that acts by the structure's

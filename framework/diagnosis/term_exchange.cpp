@@ -12,9 +12,9 @@ using Eigen::Index;
 
 namespace {
 
-/// So many of the best by their scores are fitted in the place of a term, and that term itself; and so many
-/// of those that the scores hardly tell from the best.
-constexpr std::size_t kExchangeFits = 3, kExchangeAlike = 6;
+/// In the place of a term kFittedOfBest are fitted, and that term itself; and so many of those that the
+/// scores hardly tell from the best.
+constexpr std::size_t kExchangeAlike = 6;
 
 /// Candidates in the place of a term, fitted beside the others; the largest evidence first.
 struct Rivals {
@@ -24,7 +24,7 @@ struct Rivals {
 };
 
 std::size_t countFitted(const std::vector<RankedTerm>& ranked) {
-  std::size_t count = std::min(ranked.size(), kExchangeFits);
+  std::size_t count = std::min(ranked.size(), kFittedOfBest);
   while (count < std::min(ranked.size(), kExchangeAlike) &&
          ranked.front().finding.log_evidence - ranked[count].finding.log_evidence < kTiedEvidence) {
     ++count;

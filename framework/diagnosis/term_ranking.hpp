@@ -34,6 +34,9 @@ struct AlternativeFit {
 /// other scales are not so good: their mean counts. p: parameters of the machine before any term.
 std::vector<RankedTerm> rankTerms(const ScoredCandidates& scored, const CurrentFit& current, Eigen::Index p);
 
+/// So many of the best by their scores are fitted where little is to be lost.
+constexpr std::size_t kFittedOfBest = 3;
+
 bool hasMoreEvidence(const RankedTerm& a, const RankedTerm& b);
 
 /// Fits a model with the term and says so in its finding; its evidence is -infinity where that fails.

@@ -33,13 +33,8 @@ std::vector<TermPair> listPairs(const ScoredCandidates& scored, const std::strin
 
 /// The evidence of a coefficient that a model has, against the model without it and its own scales.
 double calcTermEvidence(const LinearizedRecordings& linear, const CurrentFit& fit, const FoundTerm& term) {
-  const auto count = 1 + static_cast<Index>(term.candidate.own_scales.size());
-  std::vector<Index> others;
-  for (Index i = 0; i < linear.jacobian.cols(); ++i) {
-    if (i < term.first || i >= term.first + count) {
-      others.push_back(i);
-    }
-  }
+  const std::vector<Index> others =
+      listOthers(linear.jacobian.cols(), term.first, term.candidate.countCoefficients());
   const ScoreTest test(linear.residual, linear.jacobian(Eigen::all, others), linear.jacobian.col(term.first));
   const TermScore score = test.calcScore(0, kInfinity);
   const double estimate = fit.point[term.first];
@@ -56,27 +51,6 @@ double calcLogPrior(const TermCandidate& candidate, double estimate, double stdd
   return calcLogEvidence(0.0, {estimate, stddev, candidate.size}) + calcLogSignEvidence(candidate, estimate);
 }
 
-/// The coefficient and the own scales of a term as they are at the start of a fit.
-VectorXd listStartValues(const TermCandidate& candidate, double coefficient) {
-  VectorXd values(1 + static_cast<Index>(candidate.own_scales.size()));
-  values[0] = coefficient;
-  for (std::size_t i = 0; i < candidate.own_scales.size(); ++i) {
-    values[static_cast<Index>(i) + 1] = candidate.own_scales[i].value;
-  }
-  return values;
-}
-
-/// All columns but `first` and `other`, if that is one.
-std::vector<Index> leaveOut(Index columns, Index first, Index other) {
-  std::vector<Index> left;
-  for (Index i = 0; i < columns; ++i) {
-    if (i != first && i != other) {
-      left.push_back(i);
-    }
-  }
-  return left;
-}
-
 /// Standard deviations of a coefficient: by the stated noise, and by what remains (calcCautiousStddev).
 struct CoefficientStddev {
   double stated = kInfinity, cautious = kInfinity;
@@ -84,9 +58,9 @@ struct CoefficientStddev {
 
 /// Of column `first`; where the coefficient `other` is 0, if that is one.
 CoefficientStddev calcStddev(const LinearizedRecordings& linear, Index first, Index other) {
-  const ScoreTest test(linear.residual,
-                       linear.jacobian(Eigen::all, leaveOut(linear.jacobian.cols(), first, other)),
-                       linear.jacobian.col(first));
+  std::vector<Index> others = listOthers(linear.jacobian.cols(), first, 1);
+  others.erase(std::remove(others.begin(), others.end(), other), others.end());
+  const ScoreTest test(linear.residual, linear.jacobian(Eigen::all, others), linear.jacobian.col(first));
   const TermScore score = test.calcScore(0, kInfinity);
   return score.visible ? CoefficientStddev{score.stddev, test.calcCautiousStddev(0, linear.starts)}
                        : CoefficientStddev{};
@@ -163,11 +137,9 @@ std::optional<FittedPair> fitPair(const CurrentFit& current, const RecordedFeatu
   const std::size_t other = swaps ? pair.first : pair.second;
   const VectorXd estimates = swaps ? VectorXd(pair.score.estimates.reverse()) : pair.score.estimates;
   // the first one where the two together have it, not where it fits alone: there it may stand for both
-  constexpr double kAbove = 10.0;
   const AugmentedExperiment augmented =
-      addTerm(current.experiment, first, std::max(first.size, kAbove * std::abs(estimates[0])));
-  const VectorXd start =
-      insertAdded(current.point + pair.score.shifts, all, listStartValues(first, estimates[0]));
+      addTerm(current.experiment, first, std::max(first.size, kAboveScore * std::abs(estimates[0])));
+  const VectorXd start = insertAdded(current.point + pair.score.shifts, all, first.listValues(estimates[0]));
   TermScore score = scored.scores[other];
   score.estimate = estimates[1];
   score.shifts = VectorXd::Zero(start.size());
@@ -194,7 +166,7 @@ CurrentFit fitWithout(const ExperimentSpec& without_terms, const RecordedFeature
   double freed = 0.0;
   for (std::size_t i = 0; i < fit.terms.size(); ++i) {
     const FoundTerm& term = fit.terms[i];
-    const auto count = static_cast<Index>(term.candidate.own_scales.size()) + 1;
+    const Index count = term.candidate.countCoefficients();
     if (i == out) {
       freed = static_cast<double>(count);
       continue;

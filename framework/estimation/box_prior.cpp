@@ -31,10 +31,8 @@ BoxPrior makeBoxPrior(const ModelSpec& model) {
   const std::vector<Index>& stated = normal.parameters;
   const VectorXd half_width = 0.5 * calcWidths(unknown), center = calcBoxCenter(unknown);
   const VectorXd scale = normal.stddev.cwiseQuotient(half_width(stated));
-  const auto n = static_cast<Index>(stated.size());
-  const MatrixXd covariance = scale.asDiagonal() * normal.correlation * scale.asDiagonal();
   const MatrixXd information =
-      linalg::solveCholesky(linalg::calcCholesky(covariance).lower, MatrixXd::Identity(n, n));
+      linalg::invertPositiveDefinite(scale.asDiagonal() * normal.correlation * scale.asDiagonal());
   made.mean(stated) = (normal.mean - center(stated)).cwiseQuotient(half_width(stated));
   made.relative(stated, stated) = information / kHalfWidthInformation;
   made.within(stated, stated) = information;

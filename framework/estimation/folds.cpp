@@ -1,7 +1,6 @@
 #include "framework/estimation/folds.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace twinmap {
 
@@ -22,12 +21,6 @@ std::vector<Index> listKept(Index count, Index folds, Index fold) {
       listed.push_back(i);
     }
   }
-  return listed;
-}
-
-std::vector<Index> listRange(Index first, Index count) {
-  std::vector<Index> listed(static_cast<std::size_t>(count));
-  std::iota(listed.begin(), listed.end(), first);
   return listed;
 }
 

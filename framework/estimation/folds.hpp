@@ -11,9 +11,6 @@ std::vector<Eigen::Index> listLeftOut(Eigen::Index count, Eigen::Index folds, Ei
 /// Those that it keeps.
 std::vector<Eigen::Index> listKept(Eigen::Index count, Eigen::Index folds, Eigen::Index fold);
 
-/// first, first + 1 ...
-std::vector<Eigen::Index> listRange(Eigen::Index first, Eigen::Index count);
-
 /// Draws of the noise of so many samples, for about so many columns: more than four tell little that is new.
 Eigen::Index countDraws(Eigen::Index samples, Eigen::Index columns);
 

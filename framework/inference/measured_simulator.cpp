@@ -1,7 +1,6 @@
 #include "framework/inference/measured_simulator.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 
 #include "framework/base/text/source_location.hpp"
@@ -9,6 +8,7 @@
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -110,9 +110,7 @@ MeasuredTrial MeasuredSimulator::makeTrial(const VectorXd& features, const Vecto
   const std::vector<ParameterSpec>& unknown = getUnknown();
   VectorXd held(static_cast<Index>(unknown.size()) + known.size());
   held << calcBoxCenter(unknown), known;
-  std::vector<Index> all(unknown.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  MeasuredTrial trial{own_.get(), &getModel(), features, held, std::move(all)};
+  MeasuredTrial trial{own_.get(), &getModel(), features, held, listIndices(unknown.size())};
   trial.noise = stated_noise_;
   if (features.hasNaN()) {
     const VectorXd fitted = getModel().convert(features);

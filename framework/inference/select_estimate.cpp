@@ -27,10 +27,9 @@ bool isAccepted(const InferredMeasurement& inferred) {
 bool leavesMisfit(const InferredMeasurement& inferred) {
   const SimulatorFit* fit = findFit(inferred);
   if (inferred.trust) {
-    constexpr double kColouredLevel = 0.1 * kMismatchLevel;
     const std::vector<TrustStatus>& all = inferred.trust->statuses;
     return std::find(all.begin(), all.end(), TrustStatus::kModelMismatch) != all.end() ||
-           (fit != nullptr && fit->test.whiteness_p < kColouredLevel);
+           (fit != nullptr && fit->test.whiteness_p < kRareLevel);
   }
   return fit != nullptr && fit->test.calcPValue() < kMismatchLevel;
 }

@@ -189,20 +189,11 @@ bool SimulatorSampler::readsOutputs() const {
   });
 }
 
-LocalMisfit SimulatorSampler::linearizeTrial(const MeasuredTrial& trial, const VectorXd& features,
-                                             const VectorXd& best) const {
-  const SearchBox box(getUnknown(), {0, static_cast<Index>(getUnknown().size())}, trial.held);
-  Misfit misfit(updSimulator(), *trial.model, box, features);
-  VectorXd point = trial.held;
-  point.head(best.size()) = best;
-  return misfit.linearize(box.normalize(point));
-}
-
 std::vector<NoiseHypothesis> SimulatorSampler::listNoise(const NoiseHypothesis& stated,
                                                          const VectorXd& features, const VectorXd& known,
                                                          const VectorXd& best) const {
   const MeasuredTrial trial = makeTrial(features, known);
-  const LocalMisfit local = linearizeTrial(trial, features, best);
+  const LocalMisfit local = TrialMisfit(trial).linearize(best);
   if (!local.status.ok) {
     return {};
   }
@@ -213,7 +204,7 @@ std::optional<LinearizedMeasurement> SimulatorSampler::linearize(const VectorXd&
                                                                  const VectorXd& known,
                                                                  const VectorXd& best) const {
   const MeasuredTrial trial = makeTrial(features, known);
-  LocalMisfit local = linearizeTrial(trial, features, best);
+  LocalMisfit local = TrialMisfit(trial).linearize(best);
   if (!local.status.ok) {
     return std::nullopt;
   }

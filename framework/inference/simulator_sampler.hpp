@@ -95,8 +95,6 @@ class SimulatorSampler : public MeasuredSimulator {
  private:
   /// Whether rows are outputs of the model, which have sensors with faults, not what these are reduced to.
   bool readsOutputs() const;
-  LocalMisfit linearizeTrial(const MeasuredTrial& trial, const Eigen::VectorXd& features,
-                             const Eigen::VectorXd& best) const;
   std::vector<NoiseHypothesis> listNoise(const NoiseHypothesis& stated, const Eigen::VectorXd& features,
                                          const Eigen::VectorXd& known, const Eigen::VectorXd& best) const;
   Eigen::MatrixXd listRidgePoints(const PosteriorEstimate& posterior) const;

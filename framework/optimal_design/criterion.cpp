@@ -12,11 +12,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd calcInverse(const MatrixXd& information) {
-  return linalg::solveCholesky(linalg::calcCholesky(information).lower,
-                               MatrixXd::Identity(information.rows(), information.cols()));
-}
-
 /// Of the variances in the mean that A-optimal and weighted designs minimise; they sum to 1.
 VectorXd calcShares(const Criterion& criterion, Eigen::Index parameters) {
   return criterion.kind == Criterion::Kind::weighted
@@ -37,7 +32,8 @@ double calcCost(const Criterion& criterion, const MatrixXd& information) {
   if (criterion.kind == Criterion::Kind::e_optimal) {
     return -std::log(linalg::calcSymmetricEigenvalues(information)[0]);
   }
-  return std::log(calcInverse(information).diagonal().dot(calcShares(criterion, information.rows())));
+  return std::log(
+      linalg::invertPositiveDefinite(information).diagonal().dot(calcShares(criterion, information.rows())));
 }
 
 using Eigen::Index;

@@ -6,6 +6,7 @@
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/stencil.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -36,15 +37,6 @@ double calcRelative(const VectorXd& values, const VectorXd& scales) {
   const auto moves = scales.array() > 0.0;
   const auto count = static_cast<double>(std::max<Index>(moves.count(), 1));
   return std::sqrt(moves.select(values.array() / scales.array(), 0.0).square().sum() / count);
-}
-
-double calcMedian(VectorXd values) {
-  if (values.size() == 0) {
-    return 0.0;
-  }
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Of each output. Fourth differences of independent errors have 1 + 16 + 36 + 16 + 1 = 70 times their

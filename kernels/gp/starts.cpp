@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "kernels/linalg/order.hpp"
+
 namespace twinmap::gp {
 
 using Eigen::Index;
@@ -25,16 +27,10 @@ MatrixXd spacedSamples(const MatrixXd& inputs) {
   return samples;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // The median of the distances that are not zero; 0 if all are.
 double medianNonzeroRoot(std::vector<double> squares) {
   squares.erase(std::remove(squares.begin(), squares.end(), 0.0), squares.end());
-  return squares.empty() ? 0.0 : std::sqrt(median(std::move(squares)));
+  return std::sqrt(calcMedian(std::move(squares)));
 }
 
 // Entry g: the squared distances of all pairs within group g; the last entry: over all features.

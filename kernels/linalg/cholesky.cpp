@@ -24,6 +24,10 @@ MatrixXd solveCholesky(const MatrixXd& lower, const MatrixXd& b) {
   return x;
 }
 
+MatrixXd invertPositiveDefinite(const MatrixXd& a) {
+  return solveCholesky(calcCholesky(a).lower, MatrixXd::Identity(a.rows(), a.cols()));
+}
+
 VectorXd solvePositiveDefinite(const MatrixXd& a, const VectorXd& b) {
   return a.llt().solve(b);
 }

@@ -41,8 +41,11 @@ Eigen::MatrixXd solveLower(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& 
 /// (L L')^-1 B for a lower triangular L (n x n) and B (n x m). Cost: 2 n^2 m flops.
 Eigen::MatrixXd solveCholesky(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& b);
 
-/// A^-1 b for a symmetric positive definite A (n x n), of which the lower triangle is read; anything if it is
-/// not positive definite. Cost: n^3 / 3 flops.
+/// A^-1 for a symmetric positive definite A (n x n), of which the lower triangle is read; anything if it is
+/// not positive definite. Cost: 7 n^3 / 3 flops.
+Eigen::MatrixXd invertPositiveDefinite(const Eigen::MatrixXd& a);
+
+/// A^-1 b for the same. Cost: n^3 / 3 flops.
 Eigen::VectorXd solvePositiveDefinite(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
 /// A solution of A X = B for a symmetric positive semi-definite A (n x n), of which the lower triangle is

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap::network {
 namespace {
@@ -12,9 +13,8 @@ namespace {
 /// a step of orthogonal iteration. Returns the order.
 std::vector<Index> iterateBasis(const MatrixXd& products, MatrixXd& basis) {
   const VectorXd estimates = basis.cwiseProduct(products * basis).colwise().sum().transpose();
-  std::vector<Index> order(static_cast<std::size_t>(basis.cols()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return estimates[a] > estimates[b]; });
+  std::vector<Index> order =
+      sortIndices(basis.cols(), [&](Index a, Index b) { return estimates[a] > estimates[b]; });
   const MatrixXd sorted = basis(Eigen::all, order);
   basis = linalg::calcOrthonormalBasis(products * sorted);
   return order;

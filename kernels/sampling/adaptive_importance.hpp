@@ -11,6 +11,9 @@ namespace twinmap::importance {
 /// Log densities (n), but for a summand, at points (u x n): -infinity where the density is 0.
 using LogDensities = std::function<Eigen::VectorXd(const Eigen::MatrixXd& points)>;
 
+/// Parts about single draws of a proposal that covers others.
+constexpr int kCenters = 24;
+
 /// The random numbers of a round.
 struct RoundNumbers {
   Eigen::VectorXd picks;    ///< n, in (0, 1): the part of the proposal that each draw is of

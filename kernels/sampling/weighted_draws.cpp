@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "kernels/linalg/order.hpp"
+
 namespace twinmap::importance {
 
 using Eigen::ArrayXd;
@@ -20,10 +22,9 @@ struct SortedVariable {
 };
 
 SortedVariable sortVariable(const WeightedDraws& draws, Index variable) {
-  std::vector<Index> order(static_cast<std::size_t>(draws.weights.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Index a, Index b) { return draws.points(variable, a) < draws.points(variable, b); });
+  const std::vector<Index> order = sortIndices(draws.weights.size(), [&](Index a, Index b) {
+    return draws.points(variable, a) < draws.points(variable, b);
+  });
   SortedVariable sorted{VectorXd(draws.weights.size()), VectorXd(draws.weights.size())};
   double before = 0.0;
   for (Index i = 0; i < sorted.values.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/row_order.hpp"
 #include "framework/experiment/expression/units.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,12 +19,6 @@ using Eigen::VectorXd;
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNormalMedian = 0.6744897501960817;  // of |z|
-
-double calcMedian(VectorXd values) {
-  double* middle = values.data() + values.size() / 2;
-  std::nth_element(values.data(), middle, values.data() + values.size());
-  return *middle;
-}
 
 bool increases(const VectorXd& values) {
   return values.size() > 1 && values.allFinite() &&

@@ -8,6 +8,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/trim.hpp"
 #include "framework/experiment/expression/units.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -230,10 +231,7 @@ std::string describeTime(double seconds) {
 }
 
 double calcMedianStep(const VectorXd& times) {
-  VectorXd steps = times.tail(times.size() - 1) - times.head(times.size() - 1);
-  double* middle = steps.data() + steps.size() / 2;
-  std::nth_element(steps.data(), middle, steps.data() + steps.size());
-  return *middle;
+  return calcMedian(VectorXd(times.tail(times.size() - 1) - times.head(times.size() - 1)));
 }
 
 }  // namespace twinmap

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "kernels/linalg/order.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -80,10 +82,9 @@ RankedValues rankValues(const VectorXd& values) {
   if (!(stddev > kRounding * std::abs(values.mean()))) {
     return {};
   }
-  RankedValues ranked{values / stddev, {}, std::vector<Index>(values.size())};
-  std::iota(ranked.order.begin(), ranked.order.end(), Index{0});
-  std::stable_sort(ranked.order.begin(), ranked.order.end(),
-                   [&](Index i, Index j) { return values[i] < values[j]; });
+  RankedValues ranked{values / stddev, {}, sortIndices(values.size(), [&](Index i, Index j) {
+                        return values[i] < values[j];
+                      })};
   for (const Index i : ranked.order) {
     ranked.sorted.push_back(ranked.values[i]);
   }

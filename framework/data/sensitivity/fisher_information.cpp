@@ -52,8 +52,7 @@ MatrixXd calcMarginalPrior(const MatrixXd& prior, Index count) {
 }
 
 MatrixXd calcLimitCovariance(const MatrixXd& information, const MatrixXd& prior) {
-  return linalg::solveCholesky(linalg::calcCholesky(information + prior).lower,
-                               MatrixXd::Identity(information.rows(), information.cols()));
+  return linalg::invertPositiveDefinite(information + prior);
 }
 
 MatrixXd calcLimitCovariance(const MatrixXd& information) {

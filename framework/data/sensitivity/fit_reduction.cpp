@@ -210,9 +210,7 @@ class ReductionFit {
   }
 
   static VectorXd calcVariances(const MatrixXd& information) {
-    const linalg::Cholesky factor = linalg::calcCholesky(addPrior(information));
-    return linalg::solveCholesky(factor.lower, MatrixXd::Identity(information.rows(), information.cols()))
-        .diagonal();
+    return linalg::invertPositiveDefinite(addPrior(information)).diagonal();
   }
 
   const Simulator& prototype_;

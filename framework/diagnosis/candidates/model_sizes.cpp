@@ -19,9 +19,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Samples of the simulation: some tens in the shortest period that matters.
-constexpr Index kSizeSamples = 1001;
-
 /// The force of a candidate with a coefficient of 1, at each value of its scale.
 std::vector<std::string> listForces(const CandidateSpec& candidate) {
   if (!candidate.scale) {
@@ -119,16 +116,17 @@ void setBodySizes(const ModelSpec& model, const NamedValues<double>& names, Mode
 /// Of the coordinates that move; outputs: each one and its speed.
 void setCoordinateSizes(const std::vector<ForcedCoordinate>& forced, const MatrixXd& outputs, double duration,
                         ModelSizes& sizes) {
-  const double interval = duration / static_cast<double>(kSizeSamples - 1);
+  const double interval = duration / static_cast<double>(kMotionSamples - 1);
   for (std::size_t i = 0; i < forced.size(); ++i) {
     CoordinateSizes coordinate{forced[i].name, forced[i].is_angle};
     const auto column = static_cast<Index>(2 * i);
     const VectorXd speed = outputs.col(column + 1);
-    const VectorXd acceleration = (speed.tail(kSizeSamples - 1) - speed.head(kSizeSamples - 1)) / interval;
+    const VectorXd acceleration =
+        (speed.tail(kMotionSamples - 1) - speed.head(kMotionSamples - 1)) / interval;
     coordinate.reach = outputs.col(column).cwiseAbs().maxCoeff();
     coordinate.speed = speed.cwiseAbs().maxCoeff();
     coordinate.force = (coordinate.is_angle ? sizes.moment : sizes.mass) * acceleration.norm() /
-                       std::sqrt(static_cast<double>(kSizeSamples - 1));
+                       std::sqrt(static_cast<double>(kMotionSamples - 1));
     if (coordinate.reach > 0.0 && coordinate.speed > 0.0 && coordinate.force > 0.0) {
       sizes.coordinates.push_back(coordinate);
     }
@@ -153,7 +151,7 @@ ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& poin
   ModelSizes sizes;
   setBodySizes(model, nameValues(model, point), sizes);
   const std::vector<ForcedCoordinate> forced = listForcedCoordinates(model.system);
-  const VectorXd times = VectorXd::LinSpaced(kSizeSamples, 0.0, model.simulation.duration);
+  const VectorXd times = VectorXd::LinSpaced(kMotionSamples, 0.0, model.simulation.duration);
   const MatrixXd outputs = simulateOutputs(observeSizes(experiment, forced, sizes), times, point);
   setCoordinateSizes(forced, outputs, model.simulation.duration, sizes);
   auto column = static_cast<Index>(2 * forced.size());
@@ -167,7 +165,7 @@ ModelSizes calcModelSizes(const ExperimentSpec& experiment, const VectorXd& poin
     sizes.own_forces.emplace_back();
     for (std::size_t k = 0; k < listForces(candidate).size(); ++k) {
       sizes.own_forces.back().push_back(outputs.col(column++).norm() /
-                                        std::sqrt(static_cast<double>(kSizeSamples)));
+                                        std::sqrt(static_cast<double>(kMotionSamples)));
     }
   }
   for (const ForcedCoordinate& coordinate : forced) {

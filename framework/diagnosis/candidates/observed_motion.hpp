@@ -8,6 +8,9 @@
 
 namespace twinmap {
 
+/// Samples of a simulation that shows how a machine moves: some tens in the shortest period that matters.
+constexpr Eigen::Index kMotionSamples = 1001;
+
 /// A coordinate on which forces may act.
 struct ForcedCoordinate {
   std::string name;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <string>
 #include <vector>
@@ -43,6 +44,14 @@ struct TermCandidate {
   bool is_share = false;
   TermPlace place = TermPlace::kMachine;
 
+  /// The coefficient, and its own scales.
+  Eigen::Index countCoefficients() const { return 1 + static_cast<Eigen::Index>(own_scales.size()); }
+  /// The same as a fit begins with them, the coefficient at `first`.
+  Eigen::VectorXd listValues(double first) const {
+    return Eigen::VectorXd::NullaryExpr(countCoefficients(), [&](Eigen::Index i) {
+      return i == 0 ? first : own_scales[static_cast<std::size_t>(i - 1)].value;
+    });
+  }
   const AddTerm& getAdd(std::size_t trial) const {
     return add_to_trials.empty() ? add : add_to_trials[trial];
   }

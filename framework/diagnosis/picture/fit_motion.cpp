@@ -13,9 +13,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Samples of a simulation that is to show whether something moves.
-constexpr Index kMovingSamples = 101;
-
 bool usesName(const Expression& expression, const std::string& name) {
   const std::vector<std::string> names = getUsedNames(expression);
   return std::find(names.begin(), names.end(), name) != names.end();
@@ -46,7 +43,7 @@ FitMotion::FitMotion(const Diagnosis& diagnosis, const ExperimentSpec& experimen
     : diagnosis_(diagnosis), recordings_(recordings) {
   const ModelSpec& corrected = diagnosis.corrected.model;
   coordinates_ = listForcedCoordinates(corrected.system);
-  const VectorXd times = VectorXd::LinSpaced(kMovingSamples, 0.0, corrected.simulation.duration);
+  const VectorXd times = VectorXd::LinSpaced(kMotionSamples, 0.0, corrected.simulation.duration);
   const RecordedMotion motion = simulate(0, times);
   std::vector<ForcedCoordinate> moving;
   for (std::size_t c = 0; c < coordinates_.size(); ++c) {

@@ -5,6 +5,7 @@
 
 #include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/process_fit.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -30,19 +31,11 @@ constexpr double kMostBytes = 256.0 * 1024 * 1024;  // of derivatives by knots
 /// have as much of it, but bands that hold too little about a step.
 constexpr double kLengthShares[] = {0.05, 0.2, 1.0};
 
-/// Parameters, by their number, that are there: all but `count` from `first` on.
+/// Parameters, by their number, that are not there.
 struct Dropped {
   Index first = 0, count = 0;
 
-  std::vector<Index> listKept(Index all) const {
-    std::vector<Index> kept;
-    for (Index i = 0; i < all; ++i) {
-      if (i < first || i >= first + count) {
-        kept.push_back(i);
-      }
-    }
-    return kept;
-  }
+  std::vector<Index> listKept(Index all) const { return listOthers(all, first, count); }
 };
 
 /// Residuals and derivatives per half-width of a parameter.
@@ -52,20 +45,11 @@ LinearizedRecordings linearizeScaled(const RecordingsProblem& problem, const Vec
   return linear;
 }
 
-/// Of all unknown parameters by the linear model and their bounds.
-MatrixXd calcFitCovariance(const LinearizedRecordings& linear) {
-  MatrixXd hessian = linear.jacobian.transpose() * linear.jacobian;
-  hessian.diagonal().array() += kHalfWidthInformation;
-  return linalg::solveCholesky(linalg::calcCholesky(hessian).lower,
-                               MatrixXd::Identity(hessian.rows(), hessian.cols()));
-}
-
 /// What is known of the first parameters by their covariance, as further residuals.
 void addKnowledge(const MatrixXd& covariance, FittedRecording& fitted) {
   LinearizedRecordings& linear = fitted.linear;
   const Index n = linear.residual.size(), known = covariance.rows();
-  const MatrixXd information =
-      linalg::solveCholesky(linalg::calcCholesky(covariance).lower, MatrixXd::Identity(known, known));
+  const MatrixXd information = linalg::invertPositiveDefinite(covariance);
   linear.residual.conservativeResize(n + known);
   linear.residual.tail(known).setZero();
   linear.jacobian.conservativeResize(n + known, Eigen::NoChange);
@@ -160,12 +144,12 @@ class ForceEstimator {
     experiment_.noise = diagnosis.noise;
     const ExperimentSpec& experiment = experiment_;
     const VectorXd& point = diagnosis.after.posterior.best;
-    covariance_ = calcFitCovariance(linearizeScaled(RecordingsProblem(experiment, recordings), point));
+    const MatrixXd jacobian = linearizeScaled(RecordingsProblem(experiment, recordings), point).jacobian;
+    covariance_ = BoundedInformation(jacobian.transpose() * jacobian).calcCovariance();
     const RecordedFeatures drawn = takeFirst(recordings, count);
     const auto own = static_cast<Index>(experiment.model.nuisance.size() * drawn.features.size());
     together_.emplace(experiment, drawn, point.head(p_ + own));
-    constexpr Index kFineSamples = 1001;  // some tens in the shortest period
-    fine_times_ = VectorXd::LinSpaced(kFineSamples, 0.0, experiment.model.simulation.duration);
+    fine_times_ = VectorXd::LinSpaced(kMotionSamples, 0.0, experiment.model.simulation.duration);
     for (std::size_t k = 0; k < drawn.features.size(); ++k) {
       const SingleRecording one = takeRecording(experiment, recordings, point, k);
       single_.emplace_back(experiment, one.recording, one.point);
@@ -226,7 +210,7 @@ class ForceEstimator {
       return {};
     }
     const FoundTerm& found = diagnosis_.terms[term->term];
-    return {found.first, 1 + static_cast<Index>(found.candidate.own_scales.size())};
+    return {found.first, found.candidate.countCoefficients()};
   }
 
   /// As fine as the fastest recording needs.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 
 #include "framework/data/features/experiment_features.hpp"
@@ -15,6 +14,7 @@
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/inference/joint/join_trials.hpp"
 #include "framework/inference/measurement/supposed_input.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -23,16 +23,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-/// A trial with what simulates it around a point.
-struct TrialMisfit {
-  TrialMisfit(const MeasuredTrial& trial)
-      : box(trial.model->getUnknown(), {0, static_cast<Index>(trial.model->getUnknown().size())}, trial.held),
-        misfit(*trial.simulator, *trial.model, box, trial.features) {}
-
-  const SearchBox box;
-  Misfit misfit;
-};
 
 /// Where residuals are no neighbours in time of those before them.
 void addStarts(const RefinementModel& model, Index first, std::vector<Index>& starts) {
@@ -340,8 +330,7 @@ LinearizedRecordings RecordingsProblem::linearize(const VectorXd& point) const {
   for (std::size_t k = 0; k < problem_.trials.size(); ++k) {
     const MeasuredTrial& trial = problem_.trials[k];
     TrialMisfit own(trial);
-    const VectorXd at = own.box.normalize(point(trial.unknown));
-    LocalMisfit local = own.misfit.linearize(at);
+    LocalMisfit local = own.linearize(point(trial.unknown));
     if (!local.status.ok) {
       throw std::runtime_error("the best fit cannot be simulated with its derivatives: " +
                                local.status.reason);
@@ -380,6 +369,12 @@ RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
     }
   }
   return best;
+}
+
+std::vector<Index> listOthers(Index all, Index first, Index count) {
+  std::vector<Index> others = listIndices(all);
+  others.erase(others.begin() + first, others.begin() + first + count);
+  return others;
 }
 
 VectorXd insertAdded(const VectorXd& point, Index p, const VectorXd& added) {

@@ -102,6 +102,9 @@ struct LinearizedRecordings {
   std::vector<Eigen::Index> starts;  ///< first residual of each sequence of neighbours in time, ascending
 };
 
+/// Columns of derivatives, or parameters, by number: all but `count` from `first` on.
+std::vector<Eigen::Index> listOthers(Eigen::Index all, Eigen::Index first, Eigen::Index count);
+
 /// A point where a misfit is least, and the misfit there.
 struct RecordingFit {
   Eigen::VectorXd point;  ///< u, in the parameters' units; empty where nothing could be simulated

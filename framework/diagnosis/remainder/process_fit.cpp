@@ -166,11 +166,9 @@ BestProcess searchProcess(const ProcessProblem& problem, const std::vector<doubl
 ProcessEstimate estimateProcess(const ProcessProblem& problem, const BestProcess& best) {
   const ProcessModel model(problem, best.correlation_length);
   const Whitened sum = model.whiten(best.variance);
-  const linalg::Cholesky factor = linalg::calcCholesky(sum.information);
   ProcessEstimate estimate;
-  estimate.step = linalg::solveCholesky(factor.lower, sum.gradient);
-  estimate.covariance =
-      linalg::solveCholesky(factor.lower, MatrixXd::Identity(sum.information.rows(), sum.information.cols()));
+  estimate.covariance = linalg::invertPositiveDefinite(sum.information);
+  estimate.step = linalg::solvePositiveDefinite(sum.information, sum.gradient);
   for (std::size_t k = 0; k < problem.recordings.size(); ++k) {
     model.estimate(k, best.variance, estimate);
   }

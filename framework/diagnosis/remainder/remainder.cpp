@@ -5,8 +5,8 @@
 
 #include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/process_fit.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -28,14 +28,13 @@ void widenByScatter(const std::vector<FittedRecording>& recordings, const Vector
   for (Index k = 0; k < n; ++k) {
     const FittedRecording& recording = recordings[static_cast<std::size_t>(k)];
     const LinearizedRecordings& linear = recording.linear;
-    MatrixXd information = linear.jacobian.transpose() * linear.jacobian;
-    information.diagonal().array() += kHalfWidthInformation / recording.half_widths.array().square();
-    const linalg::Cholesky factor = linalg::calcCholesky(information);
-    const VectorXd step = linalg::solveCholesky(factor.lower, linear.jacobian.transpose() * linear.residual);
-    const MatrixXd covariance =
-        linalg::solveCholesky(factor.lower, MatrixXd::Identity(information.rows(), information.cols()));
+    const VectorXd& scale = recording.half_widths;
+    const BoundedInformation information(linear.jacobian, scale);
+    const VectorXd step =
+        scale.asDiagonal() *
+        information.solve(scale.asDiagonal() * (linear.jacobian.transpose() * linear.residual));
     estimates.col(k) = point.head(p) + step.head(p);
-    stddevs.col(k) = covariance.diagonal().head(p).cwiseSqrt();
+    stddevs.col(k) = scale.cwiseProduct(information.calcCovariance().diagonal().cwiseSqrt()).head(p);
   }
   for (Index i = 0; i < p; ++i) {
     const RandomEffects effects = calcRandomEffects(estimates.row(i), stddevs.row(i));

@@ -4,6 +4,7 @@
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/inference/select_estimate.hpp"
+#include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
 
@@ -12,10 +13,18 @@ using Eigen::VectorXd;
 
 namespace {
 
-Json nameShifts(const VectorXd& shifts, const std::vector<ParameterSpec>& parameters) {
-  Json json = Json::object();
-  for (Index i = 0; i < shifts.size(); ++i) {
-    json[parameters[static_cast<std::size_t>(i)].name.text] = shifts[i];
+/// Name -> mean, sd, the ends of the 95 % interval and unit, of the first `count`. quantiles: of all, 2.5 %
+/// and 97.5 %.
+Json makeMoments(const VectorXd& mean, const VectorXd& stddev, const Eigen::MatrixXd& quantiles,
+                 const std::vector<ParameterSpec>& parameters, std::size_t count) {
+  Json json;
+  for (std::size_t p = 0; p < count; ++p) {
+    const auto i = static_cast<Index>(p);
+    json[parameters[p].name.text] = {{"mean", mean[i]},
+                                     {"sd", stddev[i]},
+                                     {"lower", quantiles(i, 0)},
+                                     {"upper", quantiles(i, 1)},
+                                     {"unit", parameters[p].unit}};
   }
   return json;
 }
@@ -41,7 +50,7 @@ Json makeFindingJson(const TermFinding& finding, const std::vector<ParameterSpec
             {"share", finding.share},
             {"chi_square", finding.chi_square},
             {"fitted", finding.fitted},
-            {"shifts", nameShifts(finding.shifts, parameters)}};
+            {"shifts", nameValues(finding.shifts, parameters)}};
   if (!std::isfinite(finding.log_evidence)) {
     json["log_evidence"] = nullptr;  // the fit with it failed
   }
@@ -86,15 +95,8 @@ Json makeFitJson(const ExplainedFit& fit, const std::vector<ParameterSpec>& para
     json["message"] = posterior.message;
     return json;
   }
-  const Eigen::MatrixXd quantiles = posterior.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
-  for (std::size_t p = 0; p < count; ++p) {
-    const auto i = static_cast<Index>(p);
-    json["parameters"][parameters[p].name.text] = {{"mean", posterior.mean[i]},
-                                                   {"sd", posterior.stddev[i]},
-                                                   {"lower", quantiles(i, 0)},
-                                                   {"upper", quantiles(i, 1)},
-                                                   {"unit", parameters[p].unit}};
-  }
+  json["parameters"] = makeMoments(posterior.mean, posterior.stddev,
+                                   posterior.calcQuantiles(Eigen::Vector2d(0.025, 0.975)), parameters, count);
   return json;
 }
 
@@ -140,15 +142,9 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
             {"steps", Json::array()}};
   if (diagnosis.averaged.isGiven()) {
-    const Eigen::MatrixXd quantiles = diagnosis.averaged.calcQuantiles(Eigen::Vector2d(0.025, 0.975));
-    for (std::size_t p = 0; p < diagnosis.shared; ++p) {
-      const auto i = static_cast<Index>(p);
-      json["parameters"][parameters[p].name.text] = {{"mean", diagnosis.averaged.mean[i]},
-                                                     {"sd", diagnosis.averaged.stddev[i]},
-                                                     {"lower", quantiles(i, 0)},
-                                                     {"upper", quantiles(i, 1)},
-                                                     {"unit", parameters[p].unit}};
-    }
+    json["parameters"] = makeMoments(diagnosis.averaged.mean, diagnosis.averaged.stddev,
+                                     diagnosis.averaged.calcQuantiles(Eigen::Vector2d(0.025, 0.975)),
+                                     parameters, diagnosis.shared);
   }
   if (hasUnknownNoise(diagnosis.corrected.noise)) {
     json["noise"] = makeNoiseJson(diagnosis);
@@ -182,7 +178,7 @@ std::string makeBlindSpotJson(const std::vector<BlindSpot>& spots,
     }
     if (std::isfinite(spot.noticed)) {
       one["noticed_from"] = spot.noticed;
-      one["shifts"] = nameShifts(spot.shifts, parameters);
+      one["shifts"] = nameValues(spot.shifts, parameters);
     }
     json["blind_spots"].push_back(one);
   }

@@ -1,5 +1,6 @@
 #include "framework/estimation/gp/noise_profile.hpp"
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -13,13 +14,12 @@ namespace {
 
 /// L of the directions whose variance is above rounding.
 MatrixXd calcDirections(const MatrixXd& covariance) {
-  constexpr double kSmallest = 1e-12;  // of the largest
-  if (covariance.isDiagonal(kSmallest)) {
+  if (covariance.isDiagonal(kRegular)) {
     return covariance.diagonal().cwiseSqrt().asDiagonal();
   }
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(covariance);
   const VectorXd& variances = eigen.values;
-  const Index kept = (variances.array() > kSmallest * variances[variances.size() - 1]).count();
+  const Index kept = (variances.array() > kRegular * variances[variances.size() - 1]).count();
   return eigen.vectors.rightCols(kept) * variances.tail(kept).cwiseSqrt().asDiagonal();
 }
 

@@ -3,9 +3,9 @@
 #include "framework/data/features/labelled_features.hpp"
 #include "framework/data/reduction/affine_step.hpp"
 #include "framework/data/reduction/principal_components.hpp"
-#include "framework/estimation/folds.hpp"
 #include "framework/experiment/points/experiment_points.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 #include "kernels/linalg/paired_matrix.hpp"
 
 namespace twinmap {
@@ -60,7 +60,7 @@ MatrixXd drawScores(const PooledScores& scores, const MatrixXd& error_factor, st
   const MatrixXd identity = MatrixXd::Identity(r, r);
   const NormalSamples once({scores.mean, identity, identity, scores.stddev, error_factor});
   MatrixXd drawn(r, scores.mean.cols());
-  once.draw(listRange(0, drawn.cols()), {seed, RandomPurpose::kNetworkPool}, {}, drawn);
+  once.draw(listIndices(drawn.cols()), {seed, RandomPurpose::kNetworkPool}, {}, drawn);
   return drawn;
 }
 

@@ -13,6 +13,7 @@
 #include "framework/estimation/surrogate/cross_validation.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 #include "kernels/linalg/paired_matrix.hpp"
 
 namespace twinmap {
@@ -101,7 +102,7 @@ Index countFolds(const NetworkMapSpec& spec, Index samples) {
 /// Networks that a part of the samples is left out of in turn, and what they say of it.
 HeldOutTargets crossValidate(const NetworkSet& set, const NetworkTask& task, const TrainingControl& control) {
   const Index n = set.targets.cols(), p = set.targets.rows(), draws = countDraws(n, kColumnsOfFew);
-  const MatrixXd measured = drawMeasured(set.samples, listRange(0, n), draws, task.seed);
+  const MatrixXd measured = drawMeasured(set.samples, listIndices(n), draws, task.seed);
   const auto columns_in_all = static_cast<std::size_t>(n * draws);
   HeldOutTargets held_out{
       {MatrixXd(p, n * draws), MatrixXd(p, n * draws), std::vector<MatrixXd>(columns_in_all),
@@ -151,7 +152,7 @@ VectorXd calcDistillationScale(const SurrogatePool& pool, const NetworkTask& tas
   const NormalSamples samples(pool.left_out);
   const MatrixXd targets = makeTargets(map, pool.left_out_points);
   const HeldOutTargets found =
-      predictHeldOut({samples, targets}, map.members, listRange(0, n), draws, task.seed, threads);
+      predictHeldOut({samples, targets}, map.members, listIndices(n), draws, task.seed, threads);
   VectorXd scale(targets.rows());
   for (Index k = 0; k < scale.size(); ++k) {
     scale[k] = calcStddevScale(calcDepths(found.predictions, found.truth, k));
@@ -251,7 +252,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const NetworkSimulat
   const std::unique_ptr<NoisySamples> samples = makeSamples(simulations, known, map.inputs);
   const MatrixXd targets = makeTargets(map, simulations.points);
   const NetworkSet set{*samples, targets};
-  const Split parts = split(listRange(0, n), n);
+  const Split parts = split(listIndices(n), n);
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
   const auto left = static_cast<Index>(parts.held_out.size());
   const HeldOutTargets held_out =
@@ -273,7 +274,7 @@ NetworkMapTraining trainNetworkMap(const NetworkTask& task, const SurrogatePool&
   const MatrixXd targets = makeTargets(map, pool.points);
   const NormalSamples samples(pool.inputs);
   const NetworkSet set{samples, targets};
-  const Split parts = split(listRange(0, targets.cols()), targets.cols());
+  const Split parts = split(listIndices(targets.cols()), targets.cols());
   setMembers(fitNetwork(set, parts, {task.spec, task.seed, 0}, control), training);
   const Index draws = countDraws(static_cast<Index>(parts.held_out.size()), kColumnsOfMany);
   const HeldOutTargets held_out =

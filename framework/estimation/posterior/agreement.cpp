@@ -11,6 +11,7 @@
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 #include "kernels/optimization/box_quadratic.hpp"
 
 namespace twinmap {
@@ -41,19 +42,6 @@ double calcGain(const MatrixXd& information, const VectorXd& gradient, const Vec
 /// A factor F with F F' = information, which may be singular.
 MatrixXd factorizeInformation(const MatrixXd& information) {
   return linalg::calcCholesky(regularize(information)).lower;
-}
-
-/// The prior near a point, in LogCoordinates; its misfit is not wanted.
-PriorMisfit linearizePrior(const PosteriorProblem& problem, const LogCoordinates& coordinates,
-                           const VectorXd& at) {
-  const Prior prior(problem.unknown, problem.priors);
-  if (prior.isUniform()) {
-    return {0.0, VectorXd::Zero(at.size()), MatrixXd::Zero(at.size(), at.size())};
-  }
-  const VectorXd slopes = coordinates.calcSlopes(at).cwiseProduct(coordinates.getHalfWidths());
-  const PriorMisfit local = prior.calcMisfit(coordinates.toParameters(at));
-  return {0.0, slopes.cwiseProduct(local.descent),
-          slopes.asDiagonal() * local.information * slopes.asDiagonal()};
 }
 
 /// What the parameters that have a normal prior gain of it alone, by its descent: its misfit.
@@ -166,12 +154,10 @@ std::vector<PartInformation> linearizeParts(const PosteriorProblem& problem, con
     const std::vector<ParameterSpec>& unknown = trial.model->getUnknown();
     const LogCoordinates coordinates(unknown);
     const Prior uniform({}, {});
-    const SearchBox box(unknown, {0, static_cast<Index>(unknown.size())}, trial.held);
-    Misfit misfit(*trial.simulator, *trial.model, box, trial.features);
-    std::vector<Index> own(unknown.size());
-    std::iota(own.begin(), own.end(), Index{0});
-    MisfitSurface surface({{&misfit, trial.model, own, makeLosses(trial.noise, *trial.model)}}, coordinates,
-                          uniform);
+    TrialMisfit own(trial);
+    MisfitSurface surface(
+        {{&own.misfit, trial.model, listIndices(unknown.size()), makeLosses(trial.noise, *trial.model)}},
+        coordinates, uniform);
     const LocalSurface local = surface.linearize(coordinates.fromParameters(best(trial.unknown))).front();
     if (!local.simulated) {
       throw std::runtime_error("the joint estimate cannot be simulated");
@@ -192,7 +178,8 @@ Agreement testAgreement(double joint_misfit, const std::vector<double>& separate
   agreement.excess = joint_misfit - std::accumulate(separate_misfits.begin(), separate_misfits.end(), 0.0);
   const LogCoordinates coordinates(problem.unknown);
   const VectorXd at = coordinates.fromParameters(best);
-  const PriorMisfit prior = linearizePrior(problem, coordinates, at);
+  const Prior known(problem.unknown, problem.priors);
+  const PriorMisfit prior = MisfitSurface({}, coordinates, known).linearizePrior(at);
   const ExcessSimulation simulation(parts, prior, at, seed);
   const double linear = simulation.calcExcess();
   int as_large = 0;

@@ -23,6 +23,22 @@ struct MeasuredTrial {
   std::shared_ptr<const SegmentedRecording> segments{};
 };
 
+/// The misfit of a trial that is simulated whole, over all that is unknown of it.
+struct TrialMisfit {
+  explicit TrialMisfit(const MeasuredTrial& trial)
+      : box(trial.model->getUnknown(), {0, static_cast<Eigen::Index>(trial.model->getUnknown().size())},
+            trial.held),
+        misfit(*trial.simulator, *trial.model, box, trial.features) {}
+  TrialMisfit(const TrialMisfit&) = delete;
+  TrialMisfit& operator=(const TrialMisfit&) = delete;
+
+  /// At a point of all that is unknown of it, in the parameters' units.
+  LocalMisfit linearize(const Eigen::VectorXd& point) { return misfit.linearize(box.normalize(point)); }
+
+  const SearchBox box;
+  Misfit misfit;
+};
+
 /// What is known of a machine: one or several measurements, and what was known before.
 struct PosteriorProblem {
   /// u: the machine's parameters, then what each measurement leaves unknown besides.

@@ -7,23 +7,6 @@
 namespace twinmap {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
-
-MatrixXd toCoordinates(const LogCoordinates& coordinates, const MatrixXd& points) {
-  MatrixXd at(points.rows(), points.cols());
-  for (Index i = 0; i < points.cols(); ++i) {
-    at.col(i) = coordinates.fromParameters(points.col(i));
-  }
-  return at;
-}
-
-MatrixXd toParameters(const LogCoordinates& coordinates, const MatrixXd& at) {
-  MatrixXd points(at.rows(), at.cols());
-  for (Index i = 0; i < at.cols(); ++i) {
-    points.col(i) = coordinates.toParameters(at.col(i));
-  }
-  return points;
-}
 
 std::vector<MeasuredPart> ProblemSurface::makeParts(const PosteriorProblem& problem) {
   std::vector<MeasuredPart> parts;
@@ -33,7 +16,7 @@ std::vector<MeasuredPart> ProblemSurface::makeParts(const PosteriorProblem& prob
       parts.push_back({segmented_.back().get(), nullptr, trial.unknown});
       continue;
     }
-    parts_.push_back(std::make_unique<Part>(trial));
+    parts_.push_back(std::make_unique<TrialMisfit>(trial));
     parts.push_back(
         {&parts_.back()->misfit, trial.model, trial.unknown, makeLosses(trial.noise, *trial.model)});
   }

@@ -11,8 +11,13 @@
 namespace twinmap {
 
 /// Points (u x n) of parameters in their units to coordinates, and back.
-Eigen::MatrixXd toCoordinates(const LogCoordinates& coordinates, const Eigen::MatrixXd& points);
-Eigen::MatrixXd toParameters(const LogCoordinates& coordinates, const Eigen::MatrixXd& at);
+inline Eigen::MatrixXd toCoordinates(const LogCoordinates& coordinates, const Eigen::MatrixXd& points) {
+  return mapColumns(points, [&](const Eigen::VectorXd& x) { return coordinates.fromParameters(x); });
+}
+
+inline Eigen::MatrixXd toParameters(const LogCoordinates& coordinates, const Eigen::MatrixXd& at) {
+  return mapColumns(at, [&](const Eigen::VectorXd& v) { return coordinates.toParameters(v); });
+}
 
 /// The misfits of all measurements, and the surface that they make. plain: of LogCoordinates.
 class ProblemSurface {
@@ -28,21 +33,11 @@ class ProblemSurface {
   const Prior& getPrior() const { return prior_; }
 
  private:
-  struct Part {
-    explicit Part(const MeasuredTrial& trial)
-        : box(trial.model->getUnknown(), {0, static_cast<Eigen::Index>(trial.model->getUnknown().size())},
-              trial.held),
-          misfit(*trial.simulator, *trial.model, box, trial.features) {}
-
-    const SearchBox box;
-    Misfit misfit;
-  };
-
   std::vector<MeasuredPart> makeParts(const PosteriorProblem& problem);
 
   const LogCoordinates coordinates_;
   const Prior prior_;
-  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<std::unique_ptr<TrialMisfit>> parts_;
   std::vector<std::unique_ptr<SegmentedMisfit>> segmented_;
   MisfitSurface surface_;
 };

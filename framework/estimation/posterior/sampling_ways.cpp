@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 #include <optional>
 
 #include "framework/estimation/posterior/basins/straight_ridge.hpp"
@@ -10,6 +9,7 @@
 #include "framework/estimation/posterior/draws/followed_draws.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/posterior_modes.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -30,12 +30,6 @@ std::string findObstacle(const PosteriorProblem& problem, MisfitSurface& surface
   return sampling.drawn.findObstacle();
 }
 
-std::vector<Index> listAll(const PosteriorProblem& problem) {
-  std::vector<Index> all(problem.unknown.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  return all;
-}
-
 /// The shape of the best basin, and its nonlinearity in these coordinates where that was compared.
 struct ChosenShape : RidgeShape {
   std::optional<double> nonlinearity;
@@ -48,14 +42,14 @@ ChosenShape chooseShape(const PosteriorProblem& problem, const BasinSearch& foun
   if (problem.drawn <= kManyUnknown) {
     return {findRidgeShape(whole.upd(), found.basins.front()), {}};
   }
-  ProblemSurface plain(problem, listAll(problem));
+  ProblemSurface plain(problem, listIndices(problem.unknown.size()));
   const std::vector<Basin> basins = convertBasins(found.basins, whole.get(), plain.get());
   const double as_they_are = calcNonlinearity(plain.upd(), basins.front(), seed);
   const double in_logarithms = calcNonlinearity(whole.upd(), found.basins.front(), seed);
   ChosenShape shape;
   shape.nonlinearity = std::min(as_they_are, in_logarithms);
   if (as_they_are < in_logarithms) {
-    shape.plain = listAll(problem);
+    shape.plain = listIndices(problem.unknown.size());
   }
   return shape;
 }
@@ -143,7 +137,7 @@ template <class Draw>
 Sampling samplePlain(const PosteriorProblem& problem, const BasinSearch& found, const ProblemSurface& whole,
                      const Draw& draw) {
   Sampling sampling;
-  sampling.plain = listAll(problem);
+  sampling.plain = listIndices(problem.unknown.size());
   ProblemSurface plain(problem, sampling.plain);
   MisfitSurface& surface = plain.upd();
   sampling.landscape.basins = convertBasins(found.basins, whole.get(), surface);

@@ -1,7 +1,6 @@
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/estimation/estimate.hpp"
@@ -12,6 +11,7 @@
 #include "framework/estimation/posterior/sampling_ways.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/check/known_names.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -96,11 +96,8 @@ MatrixXd findLowest(MisfitSurface& surface) {
   constexpr int kPoints = 32, kLowest = 3;
   const MatrixXd points = makeStarts(surface.getDimensions(), 1, kPoints);
   const VectorXd misfits = surface.calcMisfits(points);
-  std::vector<Index> order(kPoints);
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return std::isfinite(misfits[a]) && !(misfits[a] >= misfits[b]);
-  });
+  std::vector<Index> order = sortIndices(
+      kPoints, [&](Index a, Index b) { return std::isfinite(misfits[a]) && !(misfits[a] >= misfits[b]); });
   order.resize(kLowest);
   return points(Eigen::all, order);
 }
@@ -182,9 +179,7 @@ SimulatorPosterior samplePosterior(Simulator& simulator, const RefinementModel& 
                                    const VectorXd& held, const MatrixXd& given,
                                    const SimulatorPosteriorOptions& options) {
   PosteriorProblem problem{model.getUnknown(), priors, {}, static_cast<Index>(model.getUnknown().size())};
-  std::vector<Index> all(problem.unknown.size());
-  std::iota(all.begin(), all.end(), Index{0});
-  problem.trials.push_back({&simulator, &model, features, held, std::move(all)});
+  problem.trials.push_back({&simulator, &model, features, held, listIndices(problem.unknown.size())});
   return samplePosterior(problem, given, options);
 }
 

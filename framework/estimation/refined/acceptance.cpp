@@ -36,7 +36,7 @@ Probes makeProbes(const SearchBox& box, const LocalMisfit& minimum, bool along_r
     const double side = i < count ? 1.0 : -1.0;
     const VectorXd way =
         side * std::sqrt(std::max(eigen.values[i % count], 0.0)) * eigen.vectors.col(i % count);
-    probes.reach[i] = calcReach(box, minimum.at, way, kTestReach);
+    probes.reach[i] = box.calcReach(minimum.at, way, kTestReach);
     probes.points.col(i) = box.clamp(minimum.at + probes.reach[i] * way);
   }
   return probes;
@@ -70,17 +70,6 @@ Acceptance testRises(const LocalMisfit& minimum, double bottom, const MatrixXd& 
 }
 
 }  // namespace
-
-double calcReach(const SearchBox& box, const VectorXd& at, const VectorXd& way, double most) {
-  double reach = most;
-  for (Index j = 0; j < at.size(); ++j) {
-    const double room = way[j] > 0.0 ? box.getUpper()[j] - at[j] : at[j] - box.getLower()[j];
-    if (way[j] != 0.0) {
-      reach = std::min(reach, room / std::abs(way[j]));
-    }
-  }
-  return std::max(reach, 0.0);
-}
 
 double calcChiSquareLimit(double degrees) {
   return boost::math::quantile(boost::math::chi_squared(degrees), 1.0 - kRareLevel);

@@ -34,7 +34,4 @@ Acceptance testProbed(const ProbedMisfit& minimum);
 /// Where a misfit is held against its linear model, in standard deviations.
 inline constexpr double kTestReach = 2.0;
 
-/// How far one can go from `at` along `way` within the limits, in lengths of `way`, at most `most`.
-double calcReach(const SearchBox& box, const Eigen::VectorXd& at, const Eigen::VectorXd& way, double most);
-
 }  // namespace twinmap

@@ -23,7 +23,7 @@ std::optional<MatrixXd> makeWays(const SearchBox& box, const VectorXd& at, const
   MatrixXd ways = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   for (Index i = 0; i < ways.cols(); ++i) {
     const double reach =
-        std::min(calcReach(box, at, ways.col(i), kTestReach), calcReach(box, at, -ways.col(i), kTestReach));
+        std::min(box.calcReach(at, ways.col(i), kTestReach), box.calcReach(at, -ways.col(i), kTestReach));
     if (reach < kMinReach) {
       return std::nullopt;
     }

@@ -11,6 +11,9 @@
 
 namespace twinmap {
 
+/// Numbers of responses and derivatives that are held together: 64 MiB.
+constexpr Eigen::Index kNumbersTogether = Eigen::Index{1} << 23;
+
 /// How badly a simulator explains a measurement, in units of its noise, over unknown parameters in
 /// half-widths of their bounds. One thread.
 class MeasuredMisfit {

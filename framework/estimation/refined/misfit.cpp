@@ -6,6 +6,7 @@
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/sensitivity/stencil_simulator.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/refined/thinned_misfit.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -19,10 +20,9 @@ using Eigen::VectorXd;
 MatrixXd LocalMisfit::calcHessian() const {
   MatrixXd hessian = calcInformationWithin();
   if (box.size() == 0) {
-    hessian.diagonal().array() += kHalfWidthInformation;
-  } else {
-    hessian.diagonal() += box;
+    return addBounds(std::move(hessian));
   }
+  hessian.diagonal() += box;
   return hessian;
 }
 
@@ -36,8 +36,7 @@ MatrixXd LocalMisfit::calcInformationWithin() const {
 }
 
 MatrixXd LocalMisfit::calcCovariance() const {
-  return linalg::solveCholesky(linalg::calcCholesky(calcHessian()).lower,
-                               MatrixXd::Identity(information.rows(), information.cols()));
+  return linalg::invertPositiveDefinite(calcHessian());
 }
 
 double LocalMisfit::calcDegrees() const {
@@ -157,14 +156,6 @@ const NoiseWhitener& Misfit::getWhitener() const {
   return window_->whitener ? *window_->whitener : *whitener_;
 }
 
-MatrixXd Misfit::makePoints(const MatrixXd& points) const {
-  MatrixXd sampled(box_.makePoint(points.col(0)).size(), points.cols());
-  for (Index i = 0; i < points.cols(); ++i) {
-    sampled.col(i) = box_.makePoint(points.col(i));
-  }
-  return sampled;
-}
-
 std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
   const int neighbours = countNeighbours(model_.getUnknown().size());
   const Index most = countTogether(neighbours);
@@ -176,13 +167,12 @@ std::vector<LocalMisfit> Misfit::linearizeAll(const MatrixXd& points) {
 }
 
 Index Misfit::countTogether(int responses) const {
-  constexpr Index kMostNumbers = Index{1} << 24;  // 128 MiB
   return std::max<Index>(
-      1, kMostNumbers / (responses * std::max<Index>(1, simulator_.getLayout().getRowCount())));
+      1, kNumbersTogether / (responses * std::max<Index>(1, simulator_.getLayout().getRowCount())));
 }
 
 void Misfit::linearizeBatch(const MatrixXd& points, int neighbours, std::vector<LocalMisfit>& all) {
-  const MatrixXd sampled = makePoints(points);
+  const MatrixXd sampled = box_.makePoints(points);
   MatrixXd stencils(simulator_.getLayout().getRowCount() * neighbours, points.cols());
   std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
   simulateStencils(simulator_, model_.getUnknown(), sampled, stencils, statuses.data());
@@ -211,7 +201,7 @@ LocalMisfit Misfit::makeLocalMisfit(const VectorXd& at, const LocalModel& local)
 }
 
 MatrixXd Misfit::simulateResiduals(const MatrixXd& points, std::vector<SampleStatus>& statuses) {
-  const MatrixXd sampled = makePoints(points);
+  const MatrixXd sampled = box_.makePoints(points);
   MatrixXd responses(simulator_.getLayout().getRowCount(), points.cols());
   statuses.resize(static_cast<std::size_t>(points.cols()));
   simulator_.simulate(sampled, responses, statuses.data());
@@ -253,8 +243,7 @@ VectorXd Misfit::evaluate(const MatrixXd& points) {
 }
 
 VectorXd Misfit::sumUp(const MatrixXd& points, const std::function<VectorXd(const MatrixXd&)>& calcLosses) {
-  constexpr Index kFew = 32, kMostNumbers = Index{1} << 22;  // 32 MiB, of which some copies are made
-  const Index most = std::max(kFew, kMostNumbers / std::max<Index>(1, measured_.size()));
+  const Index most = countTogether(1);
   VectorXd losses(points.cols());
   for (Index first = 0; first < points.cols(); first += most) {
     std::vector<SampleStatus> statuses;

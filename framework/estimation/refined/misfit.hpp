@@ -39,7 +39,7 @@ class Misfit final : public MeasuredMisfit {
 
   /// By exact derivatives where the simulator has them (simulateStencils).
   LocalMisfit linearize(const Eigen::VectorXd& at) { return linearizeAll(at).front(); }
-  /// At all columns of `points` (s x n), simulated in batches of at most 128 MiB.
+  /// At all columns of `points` (s x n), simulated in batches of kNumbersTogether.
   std::vector<LocalMisfit> linearizeAll(const Eigen::MatrixXd& points) override;
 
   /// Whether four points are linearised about as fast as one: exact derivatives in lanes.
@@ -49,7 +49,7 @@ class Misfit final : public MeasuredMisfit {
   /// whitener: 2 s + 1 simulations, one batch.
   ProbedMisfit probe(const Eigen::VectorXd& at, const Eigen::MatrixXd& ways);
 
-  /// The misfits at the columns of `points` (s x n), simulated in batches of some 32 MiB; infinity where a
+  /// The misfits at the columns of `points` (s x n), simulated in such batches; infinity where a
   /// simulation fails. After linearize().
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points) override;
 
@@ -59,7 +59,7 @@ class Misfit final : public MeasuredMisfit {
  private:
   /// Whitened residuals (k x n) at the columns of `points` (s x n), simulated as one batch.
   Eigen::MatrixXd simulateResiduals(const Eigen::MatrixXd& points, std::vector<SampleStatus>& statuses);
-  /// Points whose responses, so many each, are held together: 128 MiB.
+  /// Points whose responses, so many each, are held together.
   Eigen::Index countTogether(int responses) const;
   void linearizeBatch(const Eigen::MatrixXd& points, int neighbours, std::vector<LocalMisfit>& all);
   const NoiseWhitener& getWhitener() const;
@@ -67,7 +67,6 @@ class Misfit final : public MeasuredMisfit {
   LocalMisfit combine(const SampleStatus& status, const Eigen::VectorXd& at, const Eigen::VectorXd& residual,
                       const Eigen::MatrixXd& jacobian) const;
   Eigen::VectorXd addPrior(Eigen::VectorXd chi_squares, const Eigen::MatrixXd& points) const;
-  Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
   LocalMisfit makeLocalMisfit(const Eigen::VectorXd& at, const LocalModel& local);
 
   Simulator& simulator_;

@@ -1,7 +1,8 @@
 #include "framework/estimation/refined/refinement_model.hpp"
 
 #include <algorithm>
-#include <numeric>
+
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -10,12 +11,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-std::vector<Index> listAll(const FeatureExtractor& extractor) {
-  std::vector<Index> all(extractor.getInfos().size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 /// Samples after 0 and until `end`; what has no time of its own says something about the whole response.
 std::vector<Index> findSamplesUntil(const std::vector<FeatureInfo>& infos,
@@ -49,7 +44,7 @@ RefinementModel::RefinementModel(std::vector<ParameterSpec> unknown, const Featu
     : unknown_(std::move(unknown)), features_(extractor), noise_(noise.getLinearForm()) {
   const std::vector<FeatureInfo>& infos = getExtractor().getInfos();
   if (available.empty()) {
-    available = listAll(getExtractor());
+    available = listIndices(infos.size());
   }
   const double last = findLastTime(infos);
   for (const double fraction : {0.125, 0.25, 0.5}) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <vector>
 
 #include "framework/estimation/derived/value_distribution.hpp"
@@ -12,6 +11,7 @@
 #include "framework/estimation/refined/acceptance.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -62,8 +62,8 @@ class RidgeWalk {
     along_ = eigen.vectors.col(0);
     across_ = eigen.vectors.rightCols(eigen.vectors.cols() - 1);
     constexpr double kPieces = 16.0, kFar = 10.0;
-    const double length = calcReach(misfit.getBox(), minimum.at, along_, kFar) +
-                          calcReach(misfit.getBox(), minimum.at, -along_, kFar);
+    const SearchBox& box = misfit.getBox();
+    const double length = box.calcReach(minimum.at, along_, kFar) + box.calcReach(minimum.at, -along_, kFar);
     step_ = length / kPieces;
   }
 
@@ -200,8 +200,7 @@ class RidgeWalk {
   /// simulation fails.
   std::vector<std::optional<LocalMisfit>> settleAll(MatrixXd points) {
     std::vector<std::optional<LocalMisfit>> settled(static_cast<std::size_t>(points.cols()));
-    std::vector<Index> open(settled.size());
-    std::iota(open.begin(), open.end(), Index{0});
+    std::vector<Index> open = listIndices(points.cols());
     for (int k = 0; k < kFewIterations && !open.empty(); ++k) {
       const std::vector<LocalMisfit> found = misfit_.linearizeAll(points(Eigen::all, open));
       std::vector<Index> left;
@@ -242,10 +241,8 @@ class RidgeWalk {
   /// Whether any of the piece there is within the box.
   bool add(const LocalMisfit& local) {
     const Section section = calcSection(local);
-    const Index count = across_.cols();
     const MatrixXd covariance =
-        across_ * linalg::solveCholesky(section.factor.lower, MatrixXd::Identity(count, count)) *
-        across_.transpose();
+        across_ * linalg::invertPositiveDefinite(section.information) * across_.transpose();
     RidgePiece piece{local, section.tangent, covariance, 0.0, 0.0, section.log_height, 0.0};
     if (!cutAtBounds(piece)) {
       return false;

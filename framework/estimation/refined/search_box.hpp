@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "framework/estimation/box_points.hpp"
 #include "framework/experiment/model/model_spec.hpp"
 
 namespace twinmap {
@@ -31,8 +32,15 @@ class SearchBox {
   /// The searched coordinates (s) of a point of the sampled box, moved within the limits.
   Eigen::VectorXd normalize(const Eigen::VectorXd& point) const;
   Eigen::VectorXd clamp(const Eigen::VectorXd& at) const { return at.cwiseMax(lower_).cwiseMin(upper_); }
-  /// The point of the sampled box.
+  /// How far one can go from `at` along `way` within the limits, in lengths of `way`, at most `most`.
+  double calcReach(const Eigen::VectorXd& at, const Eigen::VectorXd& way, double most) const {
+    return twinmap::calcReach(at, way, lower_, upper_, most);
+  }
+  /// The point of the sampled box; those of all columns of `points` (s x n).
   Eigen::VectorXd makePoint(const Eigen::VectorXd& at) const;
+  Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const {
+    return mapColumns(points, [this](const Eigen::VectorXd& at) { return makePoint(at); });
+  }
 
  private:
   SearchedParameters searched_;

@@ -9,20 +9,12 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd ThinnedMisfit::makePoints(const MatrixXd& points) const {
-  MatrixXd sampled(box_.makePoint(points.col(0)).size(), points.cols());
-  for (Index i = 0; i < points.cols(); ++i) {
-    sampled.col(i) = box_.makePoint(points.col(i));
-  }
-  return sampled;
-}
-
 VectorXd ThinnedMisfit::calcResidual(const VectorXd& response) const {
   return samples_.scale.cwiseProduct(samples_.measured - response(samples_.rows));
 }
 
 std::vector<LocalMisfit> ThinnedMisfit::linearizeAll(const MatrixXd& points) {
-  const MatrixXd sampled = makePoints(points);
+  const MatrixXd sampled = box_.makePoints(points);
   const SearchedParameters& searched = box_.getSearched();
   MatrixXd responses(simulator_->getLayout().getRowCount(), points.cols()), derivatives;
   std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
@@ -51,7 +43,7 @@ std::vector<LocalMisfit> ThinnedMisfit::linearizeAll(const MatrixXd& points) {
 VectorXd ThinnedMisfit::evaluate(const MatrixXd& points) {
   MatrixXd responses(simulator_->getLayout().getRowCount(), points.cols());
   std::vector<SampleStatus> statuses(static_cast<std::size_t>(points.cols()));
-  simulator_->simulate(makePoints(points), responses, statuses.data());
+  simulator_->simulate(box_.makePoints(points), responses, statuses.data());
   simulations_ += static_cast<int>(points.cols());
   VectorXd misfits(points.cols());
   for (Index i = 0; i < points.cols(); ++i) {

@@ -28,7 +28,6 @@ class ThinnedMisfit final : public MeasuredMisfit {
   Eigen::VectorXd evaluate(const Eigen::MatrixXd& points) override;
 
  private:
-  Eigen::MatrixXd makePoints(const Eigen::MatrixXd& points) const;
   Eigen::VectorXd calcResidual(const Eigen::VectorXd& response) const;
 
   const std::unique_ptr<Simulator> simulator_;

@@ -233,8 +233,7 @@ VectorXd BaseParameters::calc(const VectorXd& point) const {
 }
 
 std::string BaseParameters::describe(std::size_t sum) const {
-  constexpr int kDigits = 4;
-  return join(sums[sum], standard.labels, kDigits, false);
+  return join(sums[sum], standard.labels, kFigureDigits, false);
 }
 
 std::string BaseParameters::makeExpression(std::size_t sum) const {

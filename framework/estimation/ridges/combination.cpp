@@ -15,8 +15,6 @@ using Eigen::VectorXi;
 
 namespace {
 
-constexpr int kDigits = 6;
-
 std::string makePower(const std::string& name, int exponent) {
   return exponent == 1 ? name : name + "^" + std::to_string(exponent);
 }
@@ -165,7 +163,7 @@ std::string makeExpression(const Combination& combination, const std::vector<Par
   for (std::size_t k = 0; k < combination.terms.size(); ++k) {
     const double coefficient = combination.coefficients[k], size = std::abs(coefficient);
     text += coefficient < 0.0 ? (k == 0 ? "-" : " - ") : (k == 0 ? "" : " + ");
-    text += (size == 1.0 ? "" : toShortText(size, kDigits) + " * ") +
+    text += (size == 1.0 ? "" : toShortText(size, kEstimateDigits) + " * ") +
             makeProduct(combination.terms[k], parameters);
   }
   return text;
@@ -206,8 +204,8 @@ std::string describeConstants(const Combination& combination, const std::vector<
       }
       const std::string unit = makeUnit(dropZeros(constant));
       if (!unit.empty()) {
-        text += (text.empty() ? "" : ", ") + toShortText(std::abs(combination.coefficients[k]), kDigits) +
-                " in " + unit;
+        text += (text.empty() ? "" : ", ") +
+                toShortText(std::abs(combination.coefficients[k]), kEstimateDigits) + " in " + unit;
       }
     }
   }

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <functional>
-#include <numeric>
+
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -19,10 +20,7 @@ std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
   const ArrayXd weights = calcRoughWeights(surrogate);
   const VectorXd misfit =
       ((surrogate.scores.colwise() - scores).array().colwise() * weights).matrix().colwise().squaredNorm();
-  std::vector<Index> order(static_cast<std::size_t>(misfit.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return misfit[a] < misfit[b]; });
-  return order;
+  return sortIndices(misfit.size(), [&](Index a, Index b) { return misfit[a] < misfit[b]; });
 }
 
 LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown) {

@@ -1,5 +1,6 @@
 #include "framework/estimation/surrogate/online_surrogate.hpp"
 
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/surrogate/surrogate_file.hpp"
 
 namespace twinmap {
@@ -25,11 +26,10 @@ const Estimate& OnlineSurrogate::infer(const Eigen::Ref<const VectorXd>& feature
 
 MatrixXd OnlineSurrogate::listBasins(const Estimator::Workspace& buffers) const {
   const auto& workspace = static_cast<const Workspace&>(buffers);
-  constexpr double kMinShare = 1e-3;  // 1000 to 1 is certain
   const Index u = surrogate_->unknown;
   MatrixXd basins(u, 0);
   for (const ScoreMode& mode : workspace.inversion.getModes()) {
-    if (mode.share >= kMinShare) {
+    if (mode.share >= kRareLevel) {
       basins.conservativeResize(u, basins.cols() + 1);
       basins.rightCols<1>() =
           surrogate_->center.head(u) + surrogate_->half_width.head(u).cwiseProduct(mode.moments.mean.head(u));

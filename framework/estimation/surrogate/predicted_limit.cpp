@@ -27,10 +27,7 @@ MatrixXd calcNoiseInformation(const ForwardSurrogate& surrogate, const VectorXd&
 }  // namespace
 
 VectorXd calcScoreLimit(const MatrixXd& information, const BoxPrior& prior) {
-  const Index u = information.rows();
-  const MatrixXd identity = MatrixXd::Identity(u, u);
-  const MatrixXd lower = linalg::calcCholesky(information + prior.calcInformation()).lower;
-  return linalg::solveCholesky(lower, identity).diagonal().cwiseSqrt();
+  return linalg::invertPositiveDefinite(information + prior.calcInformation()).diagonal().cwiseSqrt();
 }
 
 VectorXd calcLimitScale(const ForwardSurrogate& surrogate, const ForwardSamples& samples,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/estimation/box_points.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/exact/exact.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -37,9 +39,7 @@ gp::Moments mix(const std::vector<gp::Moments>& parts, const VectorXd& weights) 
 }  // namespace
 
 MatrixXd ScoreExplanation::calcCovariance() const {
-  const Index u = jacobian.cols();
-  const MatrixXd information = jacobian.transpose() * jacobian + prior;
-  return linalg::solveCholesky(linalg::calcCholesky(information).lower, MatrixXd::Identity(u, u));
+  return linalg::invertPositiveDefinite(jacobian.transpose() * jacobian + prior);
 }
 
 VectorXd ScoreExplanation::whiten(VectorXd scores) const {
@@ -158,7 +158,7 @@ bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& desc
     if (!solveStep(unknown, descent.damping)) {
       continue;
     }
-    const VectorXd trial = (unknown + step_).cwiseMax(-1.0).cwiseMin(1.0);
+    const VectorXd trial = clampToBox(unknown + step_);
     const double tried = calcObjective(metric, trial);
     if (tried < descent.objective) {
       unknown = trial;
@@ -170,16 +170,10 @@ bool ScoreInversion::step(const Metric& metric, VectorXd& unknown, Descent& desc
   return false;
 }
 
-namespace {
-
-constexpr double kGain = 0.01;  // a step of a tenth of a standard deviation: the linear model tells the rest
-
-}  // namespace
-
 /// False where the search has converged: a step would gain little, as the linear model predicts, or did.
 bool ScoreInversion::advance(const Metric& metric, VectorXd& unknown, Descent& descent) {
   makeNormalEquations(metric);
-  return predictGain(unknown) >= kGain && moveOn(metric, unknown, descent);
+  return predictGain(unknown) >= kLastGain && moveOn(metric, unknown, descent);
 }
 
 /// The rest of advance() where a step would gain something.
@@ -189,7 +183,7 @@ bool ScoreInversion::moveOn(const Metric& metric, VectorXd& unknown, Descent& de
     descent.objective = calcObjective(metric, unknown);
     return false;
   }
-  return before - descent.objective >= kGain;
+  return before - descent.objective >= kLastGain;
 }
 
 /// Of an undamped step that no bound stops, which step_ then is.
@@ -246,7 +240,7 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::ve
     for (int i = 0; i < kSteps && moves && apart; ++i) {
       const double distance = i < kFirstSteps ? kOnTheWay : kApart;
       makeNormalEquations(leading_);
-      moves = predictGain(minimum.point) >= kGain;
+      moves = predictGain(minimum.point) >= kLastGain;
       apart = is_apart(minimum.point + step_, distance);  // before the step, which costs an evaluation
       if (moves && apart) {
         moves = moveOn(leading_, minimum.point, descent);
@@ -401,7 +395,7 @@ const ScoreExplanation& ScoreInversion::explain(const Eigen::Ref<const VectorXd>
   scores_ = scores;
   evaluated_ = Evaluated::kNone;
   point_.tail(known.size()) = known;
-  const VectorXd within = start.cwiseMax(-1.0).cwiseMin(1.0);
+  const VectorXd within = clampToBox(start);
   std::vector<Minimum> minima = searchRoughly({within});
   if (exact::isMisfit(minima.front().objective, size(scores_))) {
     std::vector<VectorXd> starts = findStarts();

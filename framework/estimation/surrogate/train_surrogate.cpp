@@ -8,12 +8,12 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
-#include "framework/estimation/folds.hpp"
 #include "framework/estimation/surrogate/cross_validation.hpp"
 #include "framework/estimation/surrogate/fit_forward.hpp"
 #include "framework/estimation/surrogate/predicted_limit.hpp"
 #include "framework/experiment/inverse_map_spec.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -141,9 +141,8 @@ SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples
   if (half < countLeastSimulations(samples.points.rows())) {
     return {};
   }
-  const Surrogate fitted =
-      fitSimilar(whole, selectSimulations(forward, listRange(0, half)), choices, control);
-  const std::vector<Index> others = listRange(half, std::min(n - half, kMaxInferred));
+  const Surrogate fitted = fitSimilar(whole, selectSimulations(forward, listIndices(half)), choices, control);
+  const std::vector<Index> others = listIndices(std::min(n - half, kMaxInferred), half);
   const MatrixXd inputs = samples.points(Eigen::all, others).bottomRows(known);
   const Estimates found = fitted.invert(samples.measured(Eigen::all, others), inputs, control.threads);
   gp::throwIfStopped(control.stop);

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "framework/data/reduction/principal_components.hpp"
-#include "framework/estimation/folds.hpp"
 #include "kernels/gp/sparse/inducing_points.hpp"
+#include "kernels/linalg/order.hpp"
 #include "kernels/surrogate/fit_slopes.hpp"
 #include "kernels/surrogate/joint_precision.hpp"
 
@@ -164,7 +164,7 @@ std::optional<gp::JointPrecision> fitOnce(const MatrixXd& points, bool by_precis
                                           WindowFit& window) {
   std::optional<gp::JointPrecision> precision =
       by_precision ? factoriseWithSlopes(points, window) : std::nullopt;
-  if (!precision || !fitByPrecision(*precision, listRange(0, points.cols()), points, window)) {
+  if (!precision || !fitByPrecision(*precision, listIndices(points.cols()), points, window)) {
     fitByChoice(points, stop, window);
   }
   return precision;

@@ -3,9 +3,9 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 
-namespace twinmap {
+#include "framework/estimation/levels.hpp"
 
-constexpr double kChance = 1e-3;  // with which a record of right answers looks wrong
+namespace twinmap {
 
 bool CoverageRecord::isShort() const {
   constexpr double kProbability = 0.95, kTolerated = 0.92;
@@ -14,11 +14,11 @@ bool CoverageRecord::isShort() const {
   }
   const auto samples = static_cast<double>(tested);
   const boost::math::binomial held(samples, kProbability);
-  return cdf(held, std::round(share.minCoeff() * samples)) < kChance / static_cast<double>(share.size());
+  return cdf(held, std::round(share.minCoeff() * samples)) < kRareLevel / static_cast<double>(share.size());
 }
 
 std::vector<Eigen::Index> findUneven(const Eigen::VectorXd& p_value) {
-  const double least = kChance / static_cast<double>(p_value.size());
+  const double least = kRareLevel / static_cast<double>(p_value.size());
   std::vector<Eigen::Index> found;
   for (Eigen::Index q = 0; q < p_value.size(); ++q) {
     if (p_value[q] < least) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/residual_test.hpp"
@@ -10,6 +9,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_fit.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -26,7 +26,6 @@ struct SlipPlace {
 
 MatrixXd calcInformation(const MatrixXd& jacobian) {
   const MatrixXd information = jacobian.transpose() * jacobian;
-  constexpr double kRegular = 1e-12;  // of each diagonal: parameters that the recording does not tell
   return information + MatrixXd(kRegular * information.diagonal().asDiagonal()) +
          std::numeric_limits<double>::min() * MatrixXd::Identity(information.rows(), information.cols());
 }
@@ -37,10 +36,9 @@ SlipPlace scanSlips(const VectorXd& residual, const MatrixXd& jacobian, const Ve
                     const std::vector<FeatureInfo>& infos) {
   const MatrixXd lower = linalg::calcCholesky(calcInformation(jacobian)).lower;
   const VectorXd left = residual - jacobian * linalg::solveCholesky(lower, jacobian.transpose() * residual);
-  std::vector<Index> order(infos.size());
-  std::iota(order.begin(), order.end(), Index{0});
   const auto get_time = [&](Index i) { return infos[static_cast<std::size_t>(i)].time; };
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return get_time(a) > get_time(b); });
+  const std::vector<Index> order =
+      sortIndices(late.size(), [&](Index a, Index b) { return get_time(a) > get_time(b); });
   SlipPlace best;
   double slope = 0.0, squares = 0.0;
   VectorXd shared = VectorXd::Zero(jacobian.cols());
@@ -147,7 +145,6 @@ class ClockSearch {
 
   /// With one slip more, at the best place; not given where none is worth it.
   ClockedFit addSlip(const ClockedFit& fit) const {
-    constexpr double kOdds = 1e3;
     const auto n = static_cast<double>(fit.residual.size());
     if (!fit.isGiven() || !recorded_.experiment.noise.correlation.empty() ||
         static_cast<double>(fit.faults.size()) >= countMost(fit)) {
@@ -162,7 +159,7 @@ class ClockSearch {
     const SlipPlace place = scanSlips(fit.residual, fit.jacobian, with.jacobian.rightCols(1), fit.infos);
     const double left = fit.residual.squaredNorm() - place.gain;
     const double variance = is_unknown_ ? left / fit.calcDegrees() : 1.0;
-    if (place.gain < 2.0 * std::log(n * kOdds) * variance) {
+    if (place.gain < 2.0 * std::log(n / kRareLevel) * variance) {
       return {};
     }
     faults.back() = {ClockFaultKind::kSlip, place.from};

@@ -46,15 +46,13 @@ Linearized linearize(const RecordedSamples& recorded, const VectorXd& point,
   const auto simulator = makeClockedSimulator(recorded, faults, makeHalfWidths(recorded, faults));
   const VectorXd features = takeWithin(recorded, faults);
   const MeasuredTrial trial = simulator->makeTrial(features, recorded.known);
-  const auto unknown = static_cast<Index>(simulator->getUnknown().size());
-  const SearchBox box(simulator->getUnknown(), {0, unknown}, trial.held);
-  Misfit misfit(*trial.simulator, *trial.model, box, features);
-  VectorXd at = trial.held;
+  TrialMisfit own(trial);
+  VectorXd at(point.size() + static_cast<Index>(faults.size()));
   at.head(point.size()) = point;
   for (std::size_t k = 0; k < faults.size(); ++k) {
     at[point.size() + static_cast<Index>(k)] = faults[k].size;
   }
-  Linearized made{misfit.linearize(box.normalize(at)), box.getHalfWidths(), {}};
+  Linearized made{own.linearize(at), own.box.getHalfWidths(), {}};
   const std::vector<FeatureInfo>& infos = trial.model->getExtractor().getInfos();
   for (const Index i : trial.model->getWhole().features) {
     made.infos.push_back(infos[static_cast<std::size_t>(i)]);

@@ -1,12 +1,12 @@
 #include "framework/inference/joint/join_trials.hpp"
 
+#include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/refined/refinement_model.hpp"
 
 namespace twinmap {
 
 PosteriorProblem joinTrials(std::vector<MeasuredTrial> trials, const ModelSpec& model,
                             const std::function<std::string(std::size_t, const std::string&)>& name) {
-  constexpr Eigen::Index kMaxDrawn = 8;  // importance sampling is good for some ten dimensions
   PosteriorProblem problem{model.parameters, model.priors, std::move(trials), 0};
   const auto shared = static_cast<Eigen::Index>(problem.unknown.size());
   for (std::size_t k = 0; k < problem.trials.size(); ++k) {
@@ -19,7 +19,7 @@ PosteriorProblem joinTrials(std::vector<MeasuredTrial> trials, const ModelSpec& 
     }
   }
   const auto all = static_cast<Eigen::Index>(problem.unknown.size());
-  problem.drawn = problem.trials.size() == 1 || all <= kMaxDrawn ? all : shared;
+  problem.drawn = problem.trials.size() == 1 || all <= kFewUnknown ? all : shared;
   return problem;
 }
 

@@ -1,5 +1,6 @@
 #include "framework/inference/joint/joint_starts.hpp"
 
+#include "framework/estimation/box_points.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -36,7 +37,7 @@ VectorXd combineMinima(const PosteriorProblem& problem, const std::vector<Record
     descent(own) += of_own * at(own);
   }
   const VectorXd minimum = linalg::solvePositiveDefinite(information, descent);
-  return coordinates.toParameters(minimum.cwiseMax(-1.0).cwiseMin(1.0));
+  return coordinates.toParameters(clampToBox(minimum));
 }
 
 }  // namespace

@@ -33,10 +33,10 @@ double sumLogs(const VectorXd& values) {
 Restricted calcRestricted(const RotatedFit& fit, double size) {
   const VectorXd precisions = (1.0 + size * size * fit.eigenvalues.array().max(0.0)).inverse();
   const MatrixXd weighted = precisions.asDiagonal() * fit.jacobian;
-  constexpr double kSingular = 1e-12;  // of the largest: what nothing determines explains nothing
   const linalg::SymmetricEigen information = linalg::calcSymmetricEigen(fit.jacobian.transpose() * weighted);
   const double largest = information.values[information.values.size() - 1];
-  const VectorXd values = information.values.cwiseMax(std::max(kSingular * largest, 1e-300));
+  // what nothing determines explains nothing
+  const VectorXd values = information.values.cwiseMax(std::max(kRegular * largest, 1e-300));
   const VectorXd descent = information.vectors.transpose() * (weighted.transpose() * fit.residual);
   Restricted restricted;
   restricted.chi_square =

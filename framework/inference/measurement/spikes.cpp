@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/base/text/number_text.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -34,12 +35,7 @@ double calcMedianSize(const VectorXd& heights) {
       sizes.push_back(std::abs(height));
     }
   }
-  if (sizes.empty()) {
-    return 0.0;
-  }
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return *middle;
+  return calcMedian(std::move(sizes));
 }
 
 /// Of one output; rows count from its first.

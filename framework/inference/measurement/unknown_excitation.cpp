@@ -72,8 +72,7 @@ std::vector<Unknown> listEach(const ModelSpec& model) {
 
 /// The change of a table alone, with as many samples beside as its interpolation reaches.
 TableSpec makePulse(const TableSpec& table, const TableUnknown& change, double size) {
-  constexpr std::size_t kReach = 12;  // samples, behind which a spline has forgotten all but 1e-7
-  const std::size_t reach = table.interpolation == TableInterpolation::kCubic ? kReach : 1;
+  const std::size_t reach = table.interpolation == TableInterpolation::kCubic ? kSplineReach : 1;
   const std::size_t begin = change.first - std::min(change.first, reach);
   const std::size_t end = std::min(table.times.size(), change.first + change.changes.size() + reach);
   TableSpec pulse;

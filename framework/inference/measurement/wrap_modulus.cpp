@@ -1,10 +1,10 @@
 #include "framework/inference/measurement/wrap_modulus.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "framework/data/measurement/time_series.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -23,12 +23,7 @@ double findBySize(const VectorXd& values) {
       moduli.push_back(std::abs(values[i] - values[i - 1] - step));
     }
   }
-  if (moduli.empty()) {
-    return 0.0;
-  }
-  const auto middle = moduli.begin() + static_cast<std::ptrdiff_t>(moduli.size() / 2);
-  std::nth_element(moduli.begin(), middle, moduli.end());
-  return *middle;
+  return calcMedian(std::move(moduli));
 }
 
 VectorXd calcSecondDifferences(const VectorXd& values) {

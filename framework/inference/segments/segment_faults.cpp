@@ -9,6 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/noise/noise_estimate.hpp"
 #include "framework/estimation/levels.hpp"
+#include "framework/estimation/posterior/noise/colour_fit.hpp"
 #include "framework/estimation/posterior/noise/noise_candidates.hpp"
 #include "framework/inference/measurement/spikes.hpp"
 
@@ -99,7 +100,6 @@ std::optional<SupposedSegments> leaveSpikes(const SupposedSegments& from, const 
 }
 
 std::vector<SupposedSegments> supposeNoise(const SupposedSegments& from, const SegmentResidual& fitted) {
-  constexpr int kMaxOrder = 3;  // as fitColours()
   SupposedSegments sizes = from, offsets = from, colours = from;
   for (int output = 0; output < static_cast<int>(fitted.layout.output_names.size()); ++output) {
     const std::string& name = fitted.layout.output_names[static_cast<std::size_t>(output)];

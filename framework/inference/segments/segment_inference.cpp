@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/features/experiment_features.hpp"
@@ -22,6 +21,7 @@
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/simulation/model_numbers.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -92,12 +92,9 @@ NoiseWhitener makeWhitener(const ExperimentSpec& experiment, const ResponseLayou
 }
 
 std::vector<Index> orderByTime(const std::vector<FeatureInfo>& infos) {
-  std::vector<Index> order(infos.size());
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+  return sortIndices(static_cast<Index>(infos.size()), [&](Index a, Index b) {
     return infos[static_cast<std::size_t>(a)].time < infos[static_cast<std::size_t>(b)].time;
   });
-  return order;
 }
 
 /// The unknown parameters of a segment's model but for its states.
@@ -159,15 +156,13 @@ std::vector<FeatureInfo> listSamples(const PreparedSegments& prepared) {
 
 PosteriorProblem makeProblem(const PreparedSegments& prepared) {
   const std::vector<ParameterSpec>& unknown = prepared.recording->unknown;
-  MeasuredTrial trial{prepared.simulator.get(), nullptr, {}, {}, std::vector<Index>(unknown.size())};
-  std::iota(trial.unknown.begin(), trial.unknown.end(), Index{0});
+  MeasuredTrial trial{prepared.simulator.get(), nullptr, {}, {}, listIndices(unknown.size())};
   trial.segments = prepared.recording;
   return {unknown, prepared.experiment.model.priors, {trial}, static_cast<Index>(unknown.size())};
 }
 
 /// The part of the excitation that acts on a segment, so that each of its samples counts by itself.
 ModelSpec takeExcitation(const ModelSpec& segment, const VectorXd& point, double start) {
-  constexpr Index kReach = 12;  // samples beside: as far as a spline reaches
   ModelSpec taken = segment;
   ModelNumbers numbers(segment);
   numbers.update(point);
@@ -176,7 +171,8 @@ ModelSpec takeExcitation(const ModelSpec& segment, const VectorXd& point, double
       const Expression* delay = table.findDelay();
       const double late = delay == nullptr ? 0.0 : numbers.calc(*delay, {"measured", "delay", "s"});
       const VectorXd times = VectorXd::Map(table.times.data(), static_cast<Index>(table.times.size()));
-      const RowRange rows = findRows(times, start + late, start + late + segment.simulation.duration, kReach);
+      const RowRange rows = findRows(times, start + late, start + late + segment.simulation.duration,
+                                     static_cast<Index>(kSplineReach));
       if (rows.count >= 2) {
         cutTable(static_cast<std::size_t>(rows.first), static_cast<std::size_t>(rows.count), table);
       }

@@ -278,6 +278,14 @@ void addOrigins(const InferredMeasurement& inferred, const Estimate& estimate,
 
 }  // namespace
 
+Json nameValues(const Eigen::VectorXd& values, const std::vector<ParameterSpec>& parameters) {
+  Json json = Json::object();
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    json[parameters[static_cast<std::size_t>(i)].name.text] = values[i];
+  }
+  return json;
+}
+
 void addModelTest(const std::optional<ModelTest>& test, const std::vector<ParameterSpec>& parameters,
                   Json& json) {
   json["model_tested"] = test.has_value();
@@ -291,8 +299,8 @@ void addModelTest(const std::optional<ModelTest>& test, const std::vector<Parame
                        {"share", missing.share},
                        {"log_evidence", missing.log_evidence},
                        {"rivals", missing.rivals}};
-    for (Eigen::Index i = 0; i < missing.shifts.size(); ++i) {
-      json["missing"]["shifts"][parameters[static_cast<std::size_t>(i)].name.text] = missing.shifts[i];
+    if (missing.shifts.size() > 0) {
+      json["missing"]["shifts"] = nameValues(missing.shifts, parameters);
     }
   }
   if (test && test->unnoticed) {

@@ -130,15 +130,14 @@ std::string describeDiagnostics(const PosteriorEstimate& posterior) {
 }
 
 /// How the simulator's posterior was found, where that limits it: the best fit by one search alone, or draws
-/// so few that the ends of 95 % intervals scatter by a fifth of an sd.
+/// so few (kMinPosteriorDraws) that the ends of 95 % intervals scatter by a fifth of an sd.
 std::string describeSearches(const PosteriorEstimate& posterior) {
-  constexpr double kFewDraws = 200.0;  // sd of a normal 2.5 % quantile of n draws: 2.7 sd / sqrt(n)
   const SimulatorFit& fit = *posterior.fit;
   std::string limits;
   if (fit.found_best < std::min(fit.searches, 2)) {
     limits += fmt::format(": best fit found by {} of {} searches", fit.found_best, fit.searches);
   }
-  if (posterior.effective_sample_size < kFewDraws) {
+  if (posterior.effective_sample_size < kMinPosteriorDraws) {
     limits += fmt::format("{} {} draws worth {:.0f} independent ones", limits.empty() ? ":" : ",",
                           posterior.evaluations, posterior.effective_sample_size);
   }

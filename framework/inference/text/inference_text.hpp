@@ -24,6 +24,9 @@ std::string explainMissingTerm(const MissingTerm& missing, const std::vector<Par
 std::string describeUnnoticed(const std::optional<ModelTest>& test,
                               const std::vector<ParameterSpec>& parameters);
 
+/// Name -> number, of the first parameters.
+Json nameValues(const Eigen::VectorXd& values, const std::vector<ParameterSpec>& parameters);
+
 /// Adds the same to JSON: what terms the model lacks, or may lack unnoticed, and whether any was asked for.
 void addModelTest(const std::optional<ModelTest>& test, const std::vector<ParameterSpec>& parameters,
                   Json& json);

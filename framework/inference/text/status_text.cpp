@@ -9,6 +9,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/estimation/estimate.hpp"
 #include "framework/estimation/levels.hpp"
+#include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/explain_notice.hpp"
@@ -188,7 +189,7 @@ std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureI
 
 /// How many times larger than stated the noise is, where the simulator's residuals look like noise; else 0.
 double findNoiseFactor(const InferredMeasurement& inferred) {
-  constexpr double kWhite = 0.01, kLargest = 5.0;  // of thousands of normal numbers none is beyond 5
+  constexpr double kLargest = 5.0;  // of thousands of normal numbers none is beyond 5
   if (!inferred.posterior || !inferred.posterior->fit ||
       inferred.posterior->fit->residual.size() < kFewestTested) {
     return 0.0;
@@ -196,7 +197,7 @@ double findNoiseFactor(const InferredMeasurement& inferred) {
   const SimulatorFit& fit = *inferred.posterior->fit;
   const double factor = std::sqrt(fit.residual.squaredNorm() / fit.degrees);
   const bool is_noise =
-      fit.test.whiteness_p > kWhite && fit.residual.lpNorm<Eigen::Infinity>() < kLargest * factor;
+      fit.test.whiteness_p > kMismatchLevel && fit.residual.lpNorm<Eigen::Infinity>() < kLargest * factor;
   return is_noise && factor > 1.0 ? factor : 0.0;
 }
 
@@ -267,11 +268,10 @@ std::string explainClock(const InferredMeasurement& inferred) {
 
 /// "neighbouring samples have a correlation of 0.61", of the lag where it is largest.
 std::string describeColour(const Eigen::VectorXd& autoregression) {
-  constexpr Index kLags = 10;  // as many as the residual is tested over
   const std::vector<double> coefficients(autoregression.begin(), autoregression.end());
-  const auto correlation = calcAutocorrelation(coefficients, kLags);
+  const auto correlation = calcAutocorrelation(coefficients, kMostLags);
   Index lag = 1;
-  for (Index k = 2; k <= kLags; ++k) {
+  for (Index k = 2; k <= kMostLags; ++k) {
     lag = std::abs(correlation[k]) > std::abs(correlation[lag]) ? k : lag;
   }
   return fmt::format("{} have a correlation of {:.2f}",

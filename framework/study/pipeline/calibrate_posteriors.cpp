@@ -5,6 +5,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/run_control.hpp"
 #include "framework/base/log/stage_timer.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/log_coordinates.hpp"
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/estimation/trained/posterior_model.hpp"
@@ -56,7 +57,7 @@ MatrixXd drawEqually(const SimulatorPosterior& posterior, std::uint64_t seed, st
 Eigen::VectorXi rankExact(const SimulatorPosterior& posterior, const LogCoordinates& coordinates,
                           const VectorXd& truth, const MatrixXd& draws) {
   const Index p = truth.size();
-  const MatrixXd covariance = calcBasinCovariance(posterior.information).topLeftCorner(p, p);
+  const MatrixXd covariance = BoundedInformation(posterior.information).calcCovariance().topLeftCorner(p, p);
   VectorXd point = posterior.best;
   const VectorXd center = coordinates.fromParameters(point).head(p);
   point.head(p) = truth;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/analysis/calibration.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -16,12 +17,7 @@ int calcMedianSimulations(const std::vector<Refined>& refined) {
   for (const Refined& one : refined) {
     simulations.push_back(one.simulations);
   }
-  if (simulations.empty()) {
-    return 0;
-  }
-  const auto middle = simulations.begin() + static_cast<std::ptrdiff_t>(simulations.size() / 2);
-  std::nth_element(simulations.begin(), middle, simulations.end());
-  return *middle;
+  return calcMedian(std::move(simulations));
 }
 
 /// Of all samples, or of none.

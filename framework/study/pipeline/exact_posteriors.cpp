@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
-#include <numeric>
 
 #include "framework/analysis/metrics.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/simulator_team.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -18,11 +18,8 @@ using Eigen::VectorXd;
 
 /// The smallest of the depths below which lies a share of the weight.
 double calcDepthOf(const VectorXd& depths, const VectorXd& weights, double probability) {
-  std::vector<Index> order(static_cast<std::size_t>(depths.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return depths[a] < depths[b]; });
   double held = 0.0;
-  for (const Index i : order) {
+  for (const Index i : sortIndices(depths.size(), [&](Index a, Index b) { return depths[a] < depths[b]; })) {
     held += weights[i];
     if (held >= probability) {
       return depths[i];
@@ -36,9 +33,7 @@ int calcMedianSimulationsOf(const std::vector<SimulatorPosterior>& posteriors) {
   for (const SimulatorPosterior& one : posteriors) {
     simulations.push_back(one.simulations);
   }
-  const auto middle = simulations.begin() + static_cast<std::ptrdiff_t>(simulations.size() / 2);
-  std::nth_element(simulations.begin(), middle, simulations.end());
-  return simulations.empty() ? 0 : *middle;
+  return calcMedian(std::move(simulations));
 }
 
 /// How many measurements are done, from any thread.

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "framework/base/text/escape.hpp"
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -21,11 +21,8 @@ std::vector<Eigen::Index> sortByError(const Evaluation& evaluation) {
       (evaluation.predictions.mean.leftCols(evaluation.truth.cols()) - evaluation.truth).array();
   const Eigen::ArrayXd mean_square = error.square().rowwise().mean();
   const Eigen::ArrayXd normalised = (error.square().colwise() / mean_square).colwise().sum().transpose();
-  std::vector<Eigen::Index> order(static_cast<std::size_t>(normalised.size()));
-  std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b) { return normalised[a] < normalised[b]; });
-  return order;
+  return sortIndices(normalised.size(),
+                     [&](Eigen::Index a, Eigen::Index b) { return normalised[a] < normalised[b]; });
 }
 
 /// Of each sample the nominal, then the updated parameters; nuisance and inputs are the sample's own.

@@ -5,6 +5,7 @@
 #include "framework/inference/select_estimate.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
 #include "framework/study/pipeline/exact_posteriors.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -193,9 +194,7 @@ MethodSummary summarizeSampled(const std::vector<ParameterSpec>& parameters, con
     simulations.push_back(posterior.fit->simulations);
   }
   const auto reliable = static_cast<std::size_t>(sampled.weights.sum());
-  const auto middle = simulations.begin() + static_cast<std::ptrdiff_t>(simulations.size() / 2);
-  std::nth_element(simulations.begin(), middle, simulations.end());
-  summary.median_simulations = *middle;
+  summary.median_simulations = calcMedian(std::move(simulations));
   if (reliable >= kMin) {
     summary.accepted = static_cast<Index>(reliable);
     summary.metrics = calcMetrics(parameters, truth, sampled, limit_stddev);

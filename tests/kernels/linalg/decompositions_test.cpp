@@ -72,6 +72,8 @@ TEST(CholeskyDecomposition, FactorAndSolutionsFulfilTheirDefinitions) {
   EXPECT_LT((factor.lower * solveLower(factor.lower, b) - b).norm(), kTolerance);
   EXPECT_LT((a * solveCholesky(factor.lower, b) - b).norm(), kTolerance);
   EXPECT_LT((a * solvePositiveDefinite(hideUpper(a), b.col(0)) - b.col(0)).norm(), kTolerance);
+  EXPECT_LT((a * invertPositiveDefinite(hideUpper(a)) - MatrixXd::Identity(a.rows(), a.cols())).norm(),
+            kTolerance);
 }
 
 TEST(CholeskyDecomposition, KnowsItsCondition) {

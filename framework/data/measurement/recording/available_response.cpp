@@ -16,6 +16,7 @@
 #include "framework/data/measurement/recording.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
 #include "framework/data/measurement/time_series.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 namespace {
@@ -176,8 +177,8 @@ double calcSmallestStep(const VectorXd& times) {
 /// The times of a layout, by number, at which features need an output.
 std::vector<Index> listNeeded(const VectorXd& times, const std::string& output,
                               const std::vector<FeatureSpec>& features) {
-  std::vector<Index> all(static_cast<std::size_t>(times.size())), needed;
-  std::iota(all.begin(), all.end(), Index{0});
+  const std::vector<Index> all = listIndices(times.size());
+  std::vector<Index> needed;
   if (!features.empty() && !usesOutput(features, output)) {
     return {};
   }

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/estimation/bounded_information.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -19,13 +18,6 @@ double calcDistance(const Basin& basin, const VectorXd& at) {
 
 bool liesIn(const Basin& basin, const VectorXd& at) {
   return calcDistance(basin, at) < kBasinReach;
-}
-
-MatrixXd calcBasinCovariance(const MatrixXd& information) {
-  const Index u = information.rows();
-  return linalg::solveCholesky(
-      linalg::calcCholesky(information + kHalfWidthInformation * MatrixXd::Identity(u, u)).lower,
-      MatrixXd::Identity(u, u));
 }
 
 std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
@@ -42,7 +34,7 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
     if (known != basins.end()) {
       ++known->searches;
     } else if (basins.size() < kMax) {
-      MatrixXd covariance = calcBasinCovariance(end.information);
+      MatrixXd covariance = BoundedInformation(end.information).calcCovariance();
       basins.push_back({end, std::move(covariance), 1});
     }
   }

@@ -15,7 +15,7 @@ constexpr Eigen::Index kManyUnknown = 16;
 /// A minimum of chi-square within the bounds.
 struct Basin {
   LocalSurface local;
-  Eigen::MatrixXd covariance;  ///< u x u: of the linear model, with the box as a normal distribution
+  Eigen::MatrixXd covariance;  ///< u x u: of the linear model (BoundedInformation)
   int searches = 0;            ///< that ended in it
 };
 
@@ -24,9 +24,6 @@ double calcDistance(const Basin& basin, const Eigen::VectorXd& at);
 
 /// Whether a point is within kBasinReach standard deviations of a basin's minimum.
 bool liesIn(const Basin& basin, const Eigen::VectorXd& at);
-
-/// (information + that of the box as a normal distribution)^-1, u x u.
-Eigen::MatrixXd calcBasinCovariance(const Eigen::MatrixXd& information);
 
 /// The ends of searches that may bear some of the posterior, at most 25 above the best and 12 of them, each
 /// basin once: an end within three standard deviations of a better one is in its basin.

@@ -1,12 +1,12 @@
 #include "framework/estimation/posterior/basins/misfit_surface.hpp"
 
 #include <algorithm>
-#include <limits>
 
+#include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/box_points.hpp"
 #include "framework/estimation/run_tasks.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/simulation/simulator_team.hpp"
-#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -43,16 +43,6 @@ void addPart(const LocalMisfit& local, const MeasuredPart& part, LocalSurface& s
   surface.loss += linear.loss;
   surface.information(part.unknown, part.unknown) += linear.information;
   surface.descent(part.unknown) += linear.descent;
-}
-
-/// Residuals less the parameters that they, not the box, determine: trace of I (I + prior)^-1.
-double calcDegrees(const LocalSurface& surface) {
-  const Index u = surface.information.rows();
-  const MatrixXd hessian = surface.information + kHalfWidthInformation * MatrixXd::Identity(u, u);
-  const MatrixXd inverse =
-      linalg::solveCholesky(linalg::calcCholesky(hessian).lower, MatrixXd::Identity(u, u));
-  const double determined = inverse.cwiseProduct(surface.information).sum();
-  return std::max(1.0, static_cast<double>(surface.residuals) - determined);
 }
 
 /// Of each of the points (u x n) of the part's own box.
@@ -100,11 +90,7 @@ void MisfitSurface::setWindow(std::size_t window) {
 }
 
 MatrixXd MisfitSurface::toBox(const MatrixXd& points) const {
-  MatrixXd box(points.rows(), points.cols());
-  for (Index i = 0; i < points.cols(); ++i) {
-    box.col(i) = coordinates_.toBox(points.col(i));
-  }
-  return box;
+  return mapColumns(points, [&](const VectorXd& at) { return coordinates_.toBox(at); });
 }
 
 void MisfitSurface::visitParts(const std::function<void(std::size_t part)>& visit) const {
@@ -137,7 +123,7 @@ std::vector<LocalSurface> MisfitSurface::linearize(const MatrixXd& points) {
   }
   for (LocalSurface& surface : surfaces) {
     if (surface.simulated) {
-      surface.degrees = calcDegrees(surface);
+      surface.degrees = calcDegrees(surface.residuals, BoundedInformation(surface.information));
       const VectorXd slopes = coordinates_.calcSlopes(surface.at);
       surface.information = slopes.asDiagonal() * surface.information * slopes.asDiagonal();
       surface.descent = slopes.cwiseProduct(surface.descent);
@@ -175,12 +161,9 @@ void MisfitSurface::addPrior(LocalSurface& surface) const {
 }
 
 MatrixXd MisfitSurface::spreadAsPrior(const MatrixXd& points) const {
-  MatrixXd spread(points.rows(), points.cols());
-  for (Index i = 0; i < points.cols(); ++i) {
-    const VectorXd unit = 0.5 * (points.col(i).array() + 1.0);
-    spread.col(i) = coordinates_.fromParameters(prior_.calcPoint(unit)).cwiseMax(-1.0).cwiseMin(1.0);
-  }
-  return spread;
+  return mapColumns(points, [&](const VectorXd& at) {
+    return clampToBox(coordinates_.fromParameters(prior_.calcPoint(0.5 * (at.array() + 1.0))));
+  });
 }
 
 PriorMisfit MisfitSurface::linearizePrior(const VectorXd& at) const {
@@ -213,20 +196,13 @@ VectorXd MisfitSurface::calcMisfits(const MatrixXd& points) {
 }
 
 VectorXd MisfitSurface::calcLogPosteriors(const MatrixXd& points) {
-  std::vector<Index> inside;
-  for (Index i = 0; i < points.cols(); ++i) {
-    if (points.col(i).cwiseAbs().maxCoeff() <= 1.0) {
-      inside.push_back(i);
+  return calcInBox(points, [&](const MatrixXd& inside) {
+    VectorXd logs = -0.5 * calcLosses(inside);
+    for (Index i = 0; i < logs.size(); ++i) {
+      logs[i] += calcLogPrior(inside.col(i));
     }
-  }
-  VectorXd logs = VectorXd::Constant(points.cols(), -std::numeric_limits<double>::infinity());
-  if (!inside.empty()) {
-    logs(inside) = -0.5 * calcLosses(points(Eigen::all, inside));
-  }
-  for (const Index i : inside) {
-    logs[i] += calcLogPrior(points.col(i));
-  }
-  return logs;
+    return logs;
+  });
 }
 
 }  // namespace twinmap

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 
 namespace twinmap {
@@ -190,7 +191,7 @@ void SearchTeam::settle(Search& search) {
     search.local = own->local;
     search.active = false;
   } else if (!search.active) {
-    known_.push_back({search.local, calcBasinCovariance(search.local.information), 1});
+    known_.push_back({search.local, BoundedInformation(search.local.information).calcCovariance(), 1});
   }
 }
 

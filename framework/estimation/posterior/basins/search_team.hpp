@@ -12,8 +12,7 @@ namespace twinmap {
 /// How searches go and where they end. Of many parameters an iteration is dear, the response is nearly linear
 /// where their priors leave them, and place and chi-square do not agree with a basin's by chance.
 struct SearchPace {
-  double converged =
-      0.01;  ///< of chi-square, left to gain by the linear model: a tenth of a standard deviation
+  double converged = kLastGain;  ///< of chi-square, left to gain by the linear model
   /// The first iteration after which searches are judged: whatever is near a minimum has come down to it.
   int first_judged = 5;
   /// Whether searches end where their linear models lead into a basin that another has found; else where they

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "framework/estimation/box_points.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -14,17 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-/// How far from `at` a direction leads within the bounds.
-double calcReach(const VectorXd& at, const VectorXd& direction) {
-  double reach = std::numeric_limits<double>::infinity();
-  for (Index j = 0; j < at.size(); ++j) {
-    if (direction[j] != 0.0) {
-      reach = std::min(reach, (std::copysign(1.0, direction[j]) - at[j]) / direction[j]);
-    }
-  }
-  return std::max(0.0, reach);
-}
 
 /// A direction of a basin, one standard deviation long, and what a step of it costs elsewhere.
 struct Bend {
@@ -45,7 +34,7 @@ std::vector<Bend> listBends(MisfitSurface& surface, const Basin& basin) {
     }
     for (const double side : {-1.0, 1.0}) {
       const VectorXd direction = side * std::sqrt(eigen.values[k]) * eigen.vectors.col(k);
-      const double reach = std::min(1.0, calcReach(basin.local.at, direction));
+      const double reach = calcReach(basin.local.at, direction, 1.0);
       if (reach > 0.0) {
         points.conservativeResize(Eigen::NoChange, points.cols() + 1);
         points.rightCols(1) = basin.local.at + reach * direction;

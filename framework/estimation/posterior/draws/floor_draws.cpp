@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/box_points.hpp"
 #include "framework/estimation/levels.hpp"
 #include "framework/estimation/ridges/flat_directions.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -54,7 +55,7 @@ class FloorBuilder {
       random_.drawNormals(static_cast<std::uint64_t>(place), i / 2, normal.data(),
                           static_cast<std::size_t>(normal.size()));
       const VectorXd at = valley.center + (i % 2 == 0 ? 1.0 : -1.0) * valley.across * normal;
-      if (at.cwiseAbs().maxCoeff() <= 1.0) {
+      if (isInBox(at)) {
         add(place, at, std::exp(log_weight + coordinates_.calcLogUniform(at) - uniform), 0.0);
       }
     }
@@ -65,8 +66,8 @@ class FloorBuilder {
     constexpr double kShort = 1e-4;
     add(place, at, 0.0, 0.0);
     for (const auto& way : along.colwise()) {
-      const double side = (at + kShort * way).cwiseAbs().maxCoeff() <= 1.0 ? kShort : -kShort;
-      add(place, (at + side * way).cwiseMax(-1.0).cwiseMin(1.0), 0.0, 1.0 / kShort);
+      const double side = isInBox(at + kShort * way) ? kShort : -kShort;
+      add(place, clampToBox(at + side * way), 0.0, 1.0 / kShort);
     }
   }
 

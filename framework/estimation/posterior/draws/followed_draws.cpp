@@ -3,14 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/box_points.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/experiment/points/prior.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -115,19 +117,18 @@ class Follower {
       const auto columns = linearizeColumns(surface_, points(Eigen::all, batch));
       for (std::size_t i = 0; i < batch.size(); ++i) {
         const VectorXd step = calcStep(columns[i], drawn.col(batch[i]), points.col(batch[i]));
-        points.col(batch[i]) = (points.col(batch[i]) + step).cwiseMax(-1.0).cwiseMin(1.0);
+        points.col(batch[i]) = clampToBox(points.col(batch[i]) + step);
       }
     }
   }
 
   /// Points whose Jacobians are held together.
   std::size_t countTogether() const {
-    constexpr Index kMostNumbers = Index{1} << 23;  // 64 MiB
     Index numbers = 1;
     for (const LinearResponse& part : center_) {
       numbers += part.jacobian.size();
     }
-    return static_cast<std::size_t>(std::max<Index>(1, kMostNumbers / numbers));
+    return static_cast<std::size_t>(std::max<Index>(1, kNumbersTogether / numbers));
   }
 
   /// What the responses at points leave of what is asked for, in noise standard deviations (n); infinite
@@ -152,8 +153,7 @@ class Follower {
     if (here.empty()) {
       return VectorXd::Zero(point.size());
     }
-    MatrixXd information = surface_.linearizePrior(drawn).information;
-    information.diagonal().array() += kHalfWidthInformation;
+    MatrixXd information = addBounds(surface_.linearizePrior(drawn).information);
     VectorXd descent = information * (drawn - point);
     for (std::size_t part = 0; part < here.size(); ++part) {
       information += here[part].information;
@@ -175,8 +175,7 @@ importance::AdaptiveDraws drawFollowed(MisfitSurface& surface, const Basin& basi
   importance::AdaptiveDraws followed = drawLinear(surface, basin, draws, seed);
   MatrixXd& points = followed.draws.points;
   const MatrixXd drawn = points;
-  std::vector<Index> away(static_cast<std::size_t>(draws));
-  std::iota(away.begin(), away.end(), Index{0});
+  std::vector<Index> away = listIndices(Index{draws});
   ThinnedSurface thinned(surface);
   if (MisfitSurface* few = thinned.find(); few != nullptr) {
     Follower(*few, basin.local.at).lead(drawn, away, points);

@@ -7,6 +7,9 @@
 
 #include "framework/base/random/random.hpp"
 #include "framework/base/random/standard_normal.hpp"
+#include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/box_points.hpp"
+#include "framework/estimation/posterior/draws/draw_channels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/sampling/draw_rounds.hpp"
@@ -21,11 +24,11 @@ using importance::AdaptiveDraws;
 
 namespace {
 
-/// Numbers of one chain, one after the other; not those of the rounds of mixtures.
+/// Numbers of one chain, one after the other.
 importance::SliceNumbers makeNumbers(const RandomStream& random) {
-  constexpr std::uint64_t kChannel = 2, kReplicate = 1000;
+  constexpr std::uint64_t kReplicate = 1000;  // of normal numbers: rounds are fewer
   auto used = std::make_shared<std::uint64_t>(0);
-  return {[random, used] { return random.calcUniform((*used)++, kChannel); },
+  return {[random, used] { return random.calcUniform((*used)++, kOfSlices); },
           [random, used](int count) {
             VectorXd normals(count);
             random.drawNormals((*used)++, kReplicate, normals.data(), static_cast<std::size_t>(count));
@@ -39,11 +42,10 @@ importance::SliceNumbers makeNumbers(const RandomStream& random) {
 importance::TiltedNormal makeLinear(const MisfitSurface& surface, const Basin& basin) {
   const VectorXd& at = basin.local.at;
   const PriorMisfit prior = surface.linearizePrior(at);
-  MatrixXd information = prior.information;
-  information.diagonal().array() += kHalfWidthInformation;
+  const MatrixXd information = addBounds(prior.information);
   return {at + basin.covariance * basin.local.descent, linalg::calcCholesky(basin.covariance).lower,
           [&surface, at, prior, information](const VectorXd& point) {
-            if (!(point.cwiseAbs().maxCoeff() <= 1.0)) {
+            if (!isInBox(point)) {
               return -std::numeric_limits<double>::infinity();
             }
             const VectorXd apart = point - at;
@@ -112,8 +114,7 @@ AdaptiveDraws drawLinear(const MisfitSurface& surface, const Basin& basin, int d
 VectorXd calcDisplacements(MisfitSurface& surface, const Basin& basin, const MatrixXd& points) {
   const VectorXd& at = basin.local.at;
   const PriorMisfit prior = surface.linearizePrior(at);
-  const auto limit = [](const VectorXd& point) { return point.cwiseMax(-1.0).cwiseMin(1.0); };
-  const VectorXd mean = limit(at + basin.covariance * basin.local.descent);
+  const VectorXd mean = clampToBox(at + basin.covariance * basin.local.descent);
   VectorXd squares = VectorXd::Zero(at.size());
   for (const LocalSurface& local : surface.linearize(points)) {
     if (!local.simulated) {
@@ -124,8 +125,9 @@ VectorXd calcDisplacements(MisfitSurface& surface, const Basin& basin, const Mat
     const VectorXd apart = local.at - at;
     const VectorXd descent = local.descent - own.descent + prior.descent - prior.information * apart -
                              kHalfWidthInformation * apart;
-    const MatrixXd covariance = calcBasinCovariance(local.information - own.information + prior.information);
-    squares += (limit(local.at + covariance * descent) - mean).cwiseAbs2();
+    const MatrixXd covariance =
+        BoundedInformation(local.information - own.information + prior.information).calcCovariance();
+    squares += (clampToBox(local.at + covariance * descent) - mean).cwiseAbs2();
   }
   const VectorXd variances = static_cast<double>(points.cols()) * basin.covariance.diagonal();
   return squares.cwiseQuotient(variances).cwiseSqrt();

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/box_points.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -58,7 +59,7 @@ class Walk {
       random_.drawNormals(chain, steps_, normals.data(), static_cast<std::size_t>(u));
       const LocalPosterior own = calcLocalPosterior(at_[k], near);
       const VectorXd point = own.mean + own.factor.transpose().triangularView<Eigen::Upper>().solve(normals);
-      if (point.cwiseAbs().maxCoeff() <= 1.0) {
+      if (isInBox(point)) {
         points.conservativeResize(Eigen::NoChange, points.cols() + 1);
         points.rightCols(1) = point;
         moved.push_back(k);
@@ -116,7 +117,7 @@ std::vector<NormalPart> linearizeAt(MisfitSurface& surface, const MatrixXd& poin
   for (const LocalSurface& local : surface.linearize(points)) {
     if (local.simulated) {
       const LocalPosterior posterior = calcLocalPosterior(local, near);
-      parts.push_back({0.0, posterior.mean.cwiseMax(-1.0).cwiseMin(1.0),
+      parts.push_back({0.0, clampToBox(posterior.mean),
                        linalg::calcCholesky(linalg::solveCholesky(posterior.factor, identity)).lower});
     }
   }

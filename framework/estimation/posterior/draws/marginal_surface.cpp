@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "framework/experiment/model/parameter_box.hpp"
+#include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/box_points.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -11,18 +12,6 @@ namespace twinmap {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-namespace {
-
-/// The information of some coordinates with the box as a normal distribution, factorised: what a recording
-/// does not determine keeps the width of its bounds.
-MatrixXd factorize(const MatrixXd& information, const std::vector<Index>& coordinates) {
-  MatrixXd own = information(coordinates, coordinates);
-  own.diagonal().array() += kHalfWidthInformation;
-  return linalg::calcCholesky(own).lower;
-}
-
-}  // namespace
 
 MarginalSurface::MarginalSurface(MisfitSurface& surface, std::vector<Index> kept,
                                  const std::vector<Basin>& basins)
@@ -32,13 +21,12 @@ MarginalSurface::MarginalSurface(MisfitSurface& surface, std::vector<Index> kept
       others_.push_back(j);
     }
   }
-  const auto k = static_cast<Index>(kept_.size());
   for (const Basin& basin : basins) {
-    const MatrixXd lower = factorize(basin.local.information, others_);
-    predictions_.push_back({basin.local.at(kept_), basin.local.at(others_),
-                            -linalg::solveCholesky(lower, basin.local.information(others_, kept_)),
-                            linalg::solveCholesky(linalg::calcCholesky(basin.covariance(kept_, kept_)).lower,
-                                                  MatrixXd::Identity(k, k))});
+    const MatrixXd& information = basin.local.information;
+    predictions_.push_back(
+        {basin.local.at(kept_), basin.local.at(others_),
+         -BoundedInformation(information(others_, others_)).solve(information(others_, kept_)),
+         linalg::invertPositiveDefinite(basin.covariance(kept_, kept_))});
   }
 }
 
@@ -52,49 +40,40 @@ VectorXd MarginalSurface::predict(const VectorXd& kept) const {
       nearest = &prediction;
     }
   }
-  return (nearest->other_at + nearest->slopes * (kept - nearest->kept_at)).cwiseMax(-1.0).cwiseMin(1.0);
+  return clampToBox(nearest->other_at + nearest->slopes * (kept - nearest->kept_at));
 }
 
 double MarginalSurface::integrate(const LocalSurface& local) const {
   if (!local.simulated) {
     return -std::numeric_limits<double>::infinity();
   }
-  const MatrixXd lower = factorize(local.information, others_);
+  const BoundedInformation information(local.information(others_, others_));
+  const MatrixXd& lower = information.getLower();
   const double gain = linalg::solveLower(lower, local.descent(others_)).squaredNorm();
   return -0.5 * (local.loss - gain) - lower.diagonal().array().log().sum() + surface_.calcLogPrior(local.at);
 }
 
 VectorXd MarginalSurface::calcLogPosteriors(const MatrixXd& points) {
-  std::vector<Index> inside;
-  for (Index i = 0; i < points.cols(); ++i) {
-    if (points.col(i).cwiseAbs().maxCoeff() <= 1.0) {
-      inside.push_back(i);
-    }
-  }
-  VectorXd logs = VectorXd::Constant(points.cols(), -std::numeric_limits<double>::infinity());
-  if (inside.empty()) {
-    return logs;
-  }
-  MatrixXd whole(surface_.getDimensions(), static_cast<Index>(inside.size()));
+  return calcInBox(points, [&](const MatrixXd& inside) { return calcLogsWithin(inside); });
+}
+
+VectorXd MarginalSurface::calcLogsWithin(const MatrixXd& points) {
+  MatrixXd whole(surface_.getDimensions(), points.cols());
   for (Index i = 0; i < whole.cols(); ++i) {
-    const VectorXd kept = points.col(inside[static_cast<std::size_t>(i)]);
-    whole(kept_, i) = kept;
-    whole(others_, i) = predict(kept);
+    whole(kept_, i) = points.col(i);
+    whole(others_, i) = predict(points.col(i));
   }
   const std::vector<LocalSurface> predicted = surface_.linearize(whole);
   for (Index i = 0; i < whole.cols(); ++i) {
     const LocalSurface& local = predicted[static_cast<std::size_t>(i)];
     if (local.simulated) {
-      const VectorXd step =
-          linalg::solveCholesky(factorize(local.information, others_), local.descent(others_));
-      whole(others_, i) = (local.at(others_) + step).cwiseMax(-1.0).cwiseMin(1.0);
+      const BoundedInformation information(local.information(others_, others_));
+      whole(others_, i) = clampToBox(local.at(others_) + information.solve(local.descent(others_)));
     }
   }
   const std::vector<LocalSurface> improved = surface_.linearize(whole);
-  for (std::size_t i = 0; i < inside.size(); ++i) {
-    logs[inside[i]] = integrate(improved[i]);
-  }
-  return logs;
+  return VectorXd::NullaryExpr(points.cols(),
+                               [&](Index i) { return integrate(improved[static_cast<std::size_t>(i)]); });
 }
 
 }  // namespace twinmap

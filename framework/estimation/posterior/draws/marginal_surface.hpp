@@ -30,6 +30,7 @@ class MarginalSurface {
     Eigen::MatrixXd inverse;  ///< of the kept coordinates' covariance
   };
 
+  Eigen::VectorXd calcLogsWithin(const Eigen::MatrixXd& points);
   Eigen::VectorXd predict(const Eigen::VectorXd& kept) const;
   double integrate(const LocalSurface& local) const;
 

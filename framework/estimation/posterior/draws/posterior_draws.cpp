@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/base/random/standard_normal.hpp"
+#include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/box_points.hpp"
 #include "framework/estimation/posterior/basins/straight_ridge.hpp"
+#include "framework/estimation/posterior/draws/draw_channels.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/estimation/posterior/draws/local_walk.hpp"
 #include "framework/estimation/posterior/draws/marginal_surface.hpp"
 #include "framework/estimation/posterior/draws/randomized_minima.hpp"
 #include "framework/estimation/posterior/draws/valley_places.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -26,10 +29,8 @@ using importance::RoundNumbers;
 
 namespace {
 
-constexpr int kMaxRounds = 8;  // bent ridges take several until the mixture follows them
 constexpr double kEnough =
     0.4;  // effective draws a draw of a round: with 200, quantiles at 2.5 % are as good as means
-constexpr int kCenters = 24;  // parts about single draws, of a proposal
 
 /// The numbers of the rounds, made when first asked for. All measurements have the same, so that their errors
 /// are shared: they fill the cube evenly, which makes these errors small (a third to a tenth).
@@ -46,16 +47,14 @@ class Numbers {
   }
 
  private:
-  static constexpr std::uint64_t kDrawChannel = 0, kCenterChannel = 1, kPickChannel = 3;
-
   RoundNumbers make(std::uint64_t round) const {
     // a part of the proposal takes draws in a row, which are spread evenly among themselves too
-    const double first = random_.calcUniform(0, kPickChannel, round);
+    const double first = random_.calcUniform(0, kOfPicks, round);
     const auto pick = [&](Index i) { return (static_cast<double>(i) + first) / static_cast<double>(draws_); };
     return {VectorXd::NullaryExpr(draws_, pick),
-            drawSobol(static_cast<int>(dimensions_), draws_, random_, kDrawChannel, round)
+            drawSobol(static_cast<int>(dimensions_), draws_, random_, kOfDraws, round)
                 .unaryExpr(&toStandardNormal),
-            drawSobol(1, kCenters, random_, kCenterChannel, round).transpose()};
+            drawSobol(1, importance::kCenters, random_, kOfCenters, round).transpose()};
   }
 
   const Index dimensions_, draws_;
@@ -65,7 +64,7 @@ class Numbers {
 
 importance::AdaptiveOptions makeOptions() {
   importance::AdaptiveOptions options;
-  options.max_rounds = kMaxRounds;
+  options.max_rounds = kFewIterations;  // until the mixture follows a bent ridge
   options.enough = kEnough;
   return options;
 }
@@ -117,7 +116,7 @@ Basin convertBasin(const Basin& basin, const SumCoordinates& sums) {
   converted.local.at = sums.toSums(basin.local.at);
   converted.local.descent = slopes.transpose() * basin.local.descent;
   converted.local.information = slopes.transpose() * basin.local.information * slopes;
-  converted.covariance = calcBasinCovariance(converted.local.information);
+  converted.covariance = BoundedInformation(converted.local.information).calcCovariance();
   return converted;
 }
 
@@ -125,11 +124,9 @@ Basin convertBasin(const Basin& basin, const SumCoordinates& sums) {
 AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, Index drawn,
                            const PosteriorDrawOptions& options) {
   Numbers numbers(drawn, options);
-  std::vector<Index> kept(static_cast<std::size_t>(drawn));
-  std::iota(kept.begin(), kept.end(), Index{0});
   std::optional<MarginalSurface> marginal;
   if (drawn < surface.getDimensions()) {
-    marginal.emplace(surface, kept, landscape.basins);
+    marginal.emplace(surface, listIndices(drawn), landscape.basins);
   }
   return importance::sampleAdaptively(
       [&](const MatrixXd& points) {
@@ -151,10 +148,10 @@ AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, b
       landscape.nonlinearity ? *landscape.nonlinearity : calcNonlinearity(surface, basin, options.seed);
   if (!(nonlinearity < kNearlyLinear)) {
     if (const auto minima = RandomizedMinima::measure(surface, basin)) {
-      return sampleRandomizedMinima(surface, *minima, options.draws, kMaxRounds, options.seed);
+      return sampleRandomizedMinima(surface, *minima, options.draws, kFewIterations, options.seed);
     }
   }
-  return sampleLinearized(surface, basin, options.draws, kMaxRounds, options.seed);
+  return sampleLinearized(surface, basin, options.draws, kFewIterations, options.seed);
 }
 
 /// Where chains begin: all over the valley, some at the basins' minima. From a minimum in a corner of the box
@@ -204,11 +201,8 @@ AdaptiveDraws drawInSums(MisfitSurface& surface, const std::vector<Basin>& basin
   for (const Basin& basin : basins) {
     straight.push_back(levelBasin(convertBasin(basin, sums)));
   }
-  const auto convert = [&](MatrixXd points) {
-    for (auto point : points.colwise()) {
-      point = sums.fromSums(point);
-    }
-    return points;
+  const auto convert = [&](const MatrixXd& points) {
+    return mapColumns(points, [&](const VectorXd& point) { return sums.fromSums(point); });
   };
   Numbers numbers(surface.getDimensions(), options);
   AdaptiveDraws drawn = importance::sampleAdaptively(

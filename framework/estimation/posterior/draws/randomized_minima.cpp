@@ -6,6 +6,8 @@
 
 #include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/base/random/standard_normal.hpp"
+#include "framework/estimation/box_points.hpp"
+#include "framework/estimation/posterior/draws/draw_channels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/sampling/draw_rounds.hpp"
 
@@ -25,21 +27,12 @@ constexpr double kShortest = 0.1;
 
 /// How far (in standard deviations, signed) a point may go along each axis within the bounds; 0: not.
 VectorXd chooseSteps(const VectorXd& at, const MatrixXd& axes) {
-  const auto findRoom = [&](const VectorXd& axis) {
-    double room = kAxisStep;
-    for (Index i = 0; i < at.size(); ++i) {
-      if (axis[i] != 0.0) {
-        room = std::min(room, ((axis[i] > 0.0 ? 1.0 : -1.0) - at[i]) / axis[i]);
-      }
-    }
-    return room;
-  };
   const double least = kShortest * axes.colwise().norm().maxCoeff();
   return VectorXd::NullaryExpr(at.size(), [&](Index k) {
     if (axes.col(k).norm() < least) {
       return 0.0;
     }
-    const double up = findRoom(axes.col(k)), down = findRoom(-axes.col(k));
+    const double up = calcReach(at, axes.col(k), kAxisStep), down = calcReach(at, -axes.col(k), kAxisStep);
     const double step = up >= down ? up : -down;
     return std::abs(step) < kLeastRoom ? 0.0 : step;
   });
@@ -169,10 +162,9 @@ std::optional<RandomizedMinima::Draw> RandomizedMinima::draw(const VectorXd& nor
 
 importance::AdaptiveDraws sampleRandomizedMinima(MisfitSurface& surface, const RandomizedMinima& minima,
                                                  int draws, int most_rounds, std::uint64_t seed) {
-  constexpr std::uint64_t kChannel = 4;  // not that of the rounds of mixtures
   const RandomStream random(seed, RandomPurpose::kPosterior);
   const auto draw_round = [&](int round) {
-    const MatrixXd normals = drawSobol(static_cast<int>(surface.getDimensions()), draws, random, kChannel,
+    const MatrixXd normals = drawSobol(static_cast<int>(surface.getDimensions()), draws, random, kOfMinima,
                                        static_cast<std::uint64_t>(round))
                                  .unaryExpr(&toStandardNormal);
     MatrixXd points(surface.getDimensions(), draws);

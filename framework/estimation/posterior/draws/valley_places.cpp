@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/estimation/box_points.hpp"
 #include "framework/estimation/posterior/basins/search_team.hpp"
 
 namespace twinmap {
@@ -25,7 +26,7 @@ VectorXd startFromNearest(const std::vector<Basin>& basins, Index j, double valu
     }
   }
   const VectorXd along = nearest->covariance.col(j) / nearest->covariance(j, j);
-  return (nearest->local.at + (value - nearest->local.at[j]) * along).cwiseMax(-1.0).cwiseMin(1.0);
+  return clampToBox(nearest->local.at + (value - nearest->local.at[j]) * along);
 }
 
 }  // namespace

@@ -17,7 +17,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kMaxOrder = 3;
 constexpr double kLargestTangent = 3.8;  // of a hyperbolic tangent: a partial autocorrelation of .999
 
 VectorXd toAutoregression(const VectorXd& at) {

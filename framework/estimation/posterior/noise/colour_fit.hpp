@@ -7,6 +7,9 @@
 
 namespace twinmap {
 
+/// Of an autoregression that noise may have.
+constexpr int kMaxOrder = 3;
+
 /// A series of residuals, and what may be fitted to it.
 struct ResidualSeries {
   Eigen::VectorXd residual;  ///< n

@@ -5,11 +5,11 @@
 #include <boost/math/distributions/complement.hpp>
 #include <cmath>
 
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/posterior/noise/colour_fit.hpp"
 #include "framework/estimation/posterior/noise/outlier_loss.hpp"
 #include "framework/estimation/posterior/noise/residual_loss.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -149,16 +149,13 @@ class Candidates {
     const ResidualLoss loss(hypothesis, *fit_.model, window_);
     const Index u = fit_.jacobian.cols();
     VectorXd at = VectorXd::Zero(u);
-    double determined = 0.0;
+    double degrees = 1.0;
     for (int i = 0; i < kFewIterations; ++i) {
       const LinearLoss linear = loss.linearize(fit_.residual - fit_.jacobian * at, fit_.jacobian);
-      const MatrixXd hessian = linear.information + kHalfWidthInformation * MatrixXd::Identity(u, u);
-      const MatrixXd lower = linalg::calcCholesky(hessian).lower;
-      at += linalg::solveCholesky(lower, linear.descent - kHalfWidthInformation * at);
-      determined =
-          linalg::solveCholesky(lower, MatrixXd::Identity(u, u)).cwiseProduct(linear.information).sum();
+      const BoundedInformation information(linear.information);
+      at += information.solve(linear.descent - kHalfWidthInformation * at);
+      degrees = calcDegrees(fit_.residual.size(), information);
     }
-    const double degrees = std::max(1.0, static_cast<double>(fit_.residual.size()) - determined);
     return loss.standardize(fit_.residual - fit_.jacobian * at, fit_.jacobian, degrees);
   }
 

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
+
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -36,11 +37,7 @@ double calcMedianSpread(const VectorXd& residual) {
 
 double calcRobustSize(const VectorXd& values) {
   constexpr double kOfNormal = 1.4826;  // standard deviations in a median absolute value
-  std::vector<double> sizes(static_cast<std::size_t>(values.size()));
-  std::transform(values.begin(), values.end(), sizes.begin(), [](double value) { return std::abs(value); });
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::nth_element(sizes.begin(), middle, sizes.end());
-  return kOfNormal * *middle;
+  return kOfNormal * calcMedian(VectorXd(values.cwiseAbs()));
 }
 
 double calcOutlierLoss(double residual) {

@@ -7,6 +7,7 @@
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/autocorrelation.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 
 namespace twinmap {
 
@@ -48,12 +49,10 @@ std::vector<long> countSteps(const std::vector<double>& times) {
   for (std::size_t i = 1; i < times.size(); ++i) {
     steps.push_back(times[i] - times[i - 1]);
   }
-  std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double median = calcMedian(steps);
   std::vector<long> lags{0};
   for (const double step : steps) {
-    lags.push_back(lags.back() + (*middle > 0.0 ? std::max(1L, std::lround(step / *middle)) : 1L));
+    lags.push_back(lags.back() + (median > 0.0 ? std::max(1L, std::lround(step / median)) : 1L));
   }
   return lags;
 }

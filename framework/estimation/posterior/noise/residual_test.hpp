@@ -8,6 +8,9 @@
 
 namespace twinmap {
 
+/// Over so many lags of samples, whatever swings shows.
+constexpr Eigen::Index kMostLags = 10;
+
 /// Whether a residual could be noise: three tests, each with its p-value.
 struct ResidualTest {
   double chi_square_p = 1.0;  ///< of a sum of squares as large

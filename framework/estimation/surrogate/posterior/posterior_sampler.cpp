@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/box_points.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -18,10 +19,6 @@ using importance::WeightedDraws;
 namespace {
 
 constexpr int kDrawChannel = 0, kCenterChannel = 1;  // of random numbers; a round each after the first
-
-VectorXd clampToBox(const VectorXd& point) {
-  return point.cwiseMax(-1.0).cwiseMin(1.0);
-}
 
 }  // namespace
 
@@ -62,7 +59,6 @@ SurrogatePosterior PosteriorSampler::sample(const Eigen::Ref<const VectorXd>& sc
 }
 
 const importance::RoundNumbers& PosteriorSampler::getNumbers(int round, std::uint64_t sample) {
-  constexpr int kCenters = 24;
   if (sample != numbers_sample_) {
     numbers_.clear();
     numbers_sample_ = sample;
@@ -75,9 +71,10 @@ const importance::RoundNumbers& PosteriorSampler::getNumbers(int round, std::uin
     const auto calc_normal = [&](Index k, Index i) {
       return random.calcNormal(draw(i), static_cast<std::uint64_t>(k) + 1, sample);
     };
-    numbers_.push_back({VectorXd::NullaryExpr(draws_, calc_pick),
-                        MatrixXd::NullaryExpr(model_.prior.count(), draws_, calc_normal),
-                        drawUniforms(kCenters, kCenterChannel + static_cast<int>(numbers_.size()), sample)});
+    numbers_.push_back(
+        {VectorXd::NullaryExpr(draws_, calc_pick),
+         MatrixXd::NullaryExpr(model_.prior.count(), draws_, calc_normal),
+         drawUniforms(importance::kCenters, kCenterChannel + static_cast<int>(numbers_.size()), sample)});
   }
   return numbers_[static_cast<std::size_t>(round)];
 }
@@ -142,7 +139,7 @@ VectorXd PosteriorSampler::stretch(const VectorXd& point) const {
 MatrixXd PosteriorSampler::stretchAll(const MatrixXd& points) const {
   MatrixXd stretched = points;  // what is outside the box remains there
   for (Index i = 0; i < points.cols(); ++i) {
-    if (points.col(i).cwiseAbs().maxCoeff() <= 1.0) {
+    if (isInBox(points.col(i))) {
       stretched.col(i) = stretch(points.col(i));
     }
   }

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "framework/estimation/box_points.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -23,20 +25,12 @@ void ScoreLikelihood::setMeasurement(const Eigen::Ref<const VectorXd>& scores,
 }
 
 VectorXd ScoreLikelihood::calcLogs(const MatrixXd& unknown) {
-  std::vector<Index> inside;
-  for (Index i = 0; i < unknown.cols(); ++i) {
-    if (unknown.col(i).cwiseAbs().maxCoeff() <= 1.0) {
-      inside.push_back(i);
-    }
-  }
-  points_.resize(unknown.rows() + known_.size(), static_cast<Index>(inside.size()));
-  points_ << unknown(Eigen::all, inside), known_.replicate(1, points_.cols());
-  surrogate_.evaluate(points_, widening_, workspaces_, values_, stddev_);
-  VectorXd logs = VectorXd::Constant(unknown.cols(), -std::numeric_limits<double>::infinity());
-  for (std::size_t k = 0; k < inside.size(); ++k) {
-    logs(inside[k]) = calcLog(static_cast<Index>(k));
-  }
-  return logs;
+  return calcInBox(unknown, [this](const MatrixXd& inside) {
+    points_.resize(inside.rows() + known_.size(), inside.cols());
+    points_ << inside, known_.replicate(1, points_.cols());
+    surrogate_.evaluate(points_, widening_, workspaces_, values_, stddev_);
+    return VectorXd(VectorXd::NullaryExpr(inside.cols(), [this](Index k) { return calcLog(k); }));
+  });
 }
 
 /// Of one of the points evaluated.

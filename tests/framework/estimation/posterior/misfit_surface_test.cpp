@@ -40,7 +40,7 @@ TEST(MisfitSurface, ConvertsToOtherCoordinatesWithoutSimulations) {
   const SearchBox box(unknown, {0, 3}, VectorXd::Zero(3));
   Misfit misfit(problem.simulator, problem.model, box, problem.measure(truth, 0.01));
   const Prior prior(unknown, {});
-  const std::vector<Index> all = testing::Surface::listAll(3);
+  const std::vector<Index> all = listIndices(Index{3});
   const LogCoordinates logs(unknown), plain(unknown, all);
   MisfitSurface in_logs({{&misfit, &problem.model, all}}, logs, prior);
   MisfitSurface as_they_are({{&misfit, &problem.model, all}}, plain, prior);
@@ -66,7 +66,7 @@ TEST(MisfitSurface, TakesPartsSideBySide) {
   Misfit of_second(second.simulator, second.model, box, second.measure(truth, 0.02, 2));
   const Prior prior(unknown, {});
   const LogCoordinates logs(unknown);
-  const std::vector<Index> all = testing::Surface::listAll(3);
+  const std::vector<Index> all = listIndices(Index{3});
   const std::vector<MeasuredPart> parts{{&of_first, &first.model, all}, {&of_second, &second.model, all}};
   MisfitSurface serial(parts, logs, prior), parallel(parts, logs, prior, true);
   const MatrixXd points = 0.3 * MatrixXd::Random(3, 5);

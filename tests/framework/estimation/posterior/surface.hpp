@@ -1,12 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/posterior/basins/basin_search.hpp"
 #include "framework/estimation/refined/misfit.hpp"
+#include "kernels/linalg/order.hpp"
 #include "tests/framework/estimation/refined/problem.hpp"
 
 namespace twinmap::testing {
@@ -22,18 +23,12 @@ struct Surface {
         box(unknown, {0, truth.size()}, Eigen::VectorXd::Zero(truth.size())),
         misfit(problem.simulator, problem.model, box, features),
         prior(unknown, {}),
-        surface({{&misfit, &problem.model, listAll(truth.size())}}, coordinates, prior) {}
-
-  static std::vector<Eigen::Index> listAll(Eigen::Index count) {
-    std::vector<Eigen::Index> all(static_cast<std::size_t>(count));
-    std::iota(all.begin(), all.end(), Eigen::Index{0});
-    return all;
-  }
+        surface({{&misfit, &problem.model, listIndices(truth.size())}}, coordinates, prior) {}
 
   std::vector<Basin> makeBasins(const Eigen::MatrixXd& points) {
     std::vector<Basin> basins;
     for (LocalSurface& local : surface.linearize(points)) {
-      Eigen::MatrixXd covariance = calcBasinCovariance(local.information);
+      Eigen::MatrixXd covariance = BoundedInformation(local.information).calcCovariance();
       basins.push_back({std::move(local), std::move(covariance), 3});
     }
     return basins;
