@@ -9,6 +9,7 @@
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
+#include "framework/inference/shown_start.hpp"
 
 namespace twinmap {
 
@@ -114,6 +115,7 @@ MeasuredTrial MeasuredSimulator::makeTrial(const VectorXd& features, const Vecto
   std::iota(all.begin(), all.end(), Index{0});
   MeasuredTrial trial{own_.get(), &getModel(), features, held, std::move(all)};
   trial.noise = stated_noise_;
+  trial.shown = readShownStart(model_, extractor_.getInfos(), features);
   if (features.hasNaN()) {
     const VectorXd fitted = getModel().convert(features);
     std::vector<Index> available;
