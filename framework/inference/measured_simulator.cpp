@@ -8,6 +8,7 @@
 #include "framework/estimation/trained/refinement_starts.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/experiment/points/point_set.hpp"
+#include "framework/inference/shown_start.hpp"
 #include "kernels/linalg/order.hpp"
 
 namespace twinmap {
@@ -112,6 +113,7 @@ MeasuredTrial MeasuredSimulator::makeTrial(const VectorXd& features, const Vecto
   held << calcBoxCenter(unknown), known;
   MeasuredTrial trial{own_.get(), &getModel(), features, held, listIndices(unknown.size())};
   trial.noise = stated_noise_;
+  trial.shown = readShownStart(model_, extractor_.getInfos(), features);
   if (features.hasNaN()) {
     const VectorXd fitted = getModel().convert(features);
     std::vector<Index> available;

@@ -21,6 +21,8 @@ struct MeasuredTrial {
   std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
   /// In the place of model, features, held and noise, where the trial is a recording in segments.
   std::shared_ptr<const SegmentedRecording> segments{};
+  /// What the measurement shows of its unknown parameters, NaN of others; empty: of none (readShownStart).
+  Eigen::VectorXd shown{};
 };
 
 /// The misfit of a trial that is simulated whole, over all that is unknown of it.
@@ -48,6 +50,10 @@ struct PosteriorProblem {
   /// Of the unknown parameters, the first that are drawn; the others are integrated out (MarginalSurface).
   Eigen::Index drawn = 0;
 };
+
+/// Points to search from (u x n), and the last of them, without any the middle of the bounds, with what
+/// measurements show of their start, where they show any.
+Eigen::MatrixXd addShownStart(const PosteriorProblem& problem, const Eigen::MatrixXd& given);
 
 /// Whether threads are better spent on whole trials: with more than kManyUnknown parameters a simulation
 /// takes long enough, and few of them side by side leave a thread's lanes empty. No two may share a

@@ -31,6 +31,25 @@ std::vector<Basin> convertBasins(const std::vector<Basin>& basins, const MisfitS
   return collectBasins(std::move(ends));
 }
 
+MatrixXd addShownStart(const PosteriorProblem& problem, const MatrixXd& given) {
+  VectorXd start = given.cols() > 0 ? VectorXd(given.rightCols(1)) : calcBoxCenter(problem.unknown);
+  bool is_shown = false;
+  for (const MeasuredTrial& trial : problem.trials) {
+    for (Index i = 0; i < trial.shown.size(); ++i) {
+      if (std::isfinite(trial.shown[i])) {
+        start[trial.unknown[static_cast<std::size_t>(i)]] = trial.shown[i];
+        is_shown = true;
+      }
+    }
+  }
+  if (!is_shown) {
+    return given;
+  }
+  MatrixXd starts(start.size(), given.cols() + 1);
+  starts << given, start;
+  return starts;
+}
+
 bool mayRunSideBySide(const PosteriorProblem& problem) {
   std::set<const Simulator*> simulators;
   for (const MeasuredTrial& trial : problem.trials) {

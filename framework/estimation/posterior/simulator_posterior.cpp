@@ -131,7 +131,8 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
   const LogCoordinates& coordinates = whole.getCoordinates();
   std::optional<SearchStage> stage(std::in_place, "search for the best fit");
   beginBest(collectNames(problem.unknown));
-  const MatrixXd starts = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
+  const MatrixXd starts =
+      addShownStart(problem, addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn));
   const BasinSearch found = findBasins(surface, toCoordinates(coordinates, starts), options.seed,
                                        limitSearch(options.search, problem.drawn));
   SimulatorPosterior posterior;
