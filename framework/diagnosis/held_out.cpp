@@ -57,7 +57,8 @@ VectorXd fitNuisance(const ExperimentSpec& experiment, const RecordedFeatures& r
   RecordedFeatures held = recording;
   held.known.resize(parameters.size() + recording.known.size());
   held.known << parameters, recording.known;
-  const RecordingFit fit = RecordingsProblem(holdParameters(experiment), held).fit(makeStarts(nuisance));
+  const RecordingsProblem problem(holdParameters(experiment), held);
+  const RecordingFit fit = problem.fit(addShownStart(problem.get(), makeStarts(nuisance)));
   if (fit.point.size() == 0) {
     throw std::runtime_error("the recording cannot be simulated with these parameters");
   }

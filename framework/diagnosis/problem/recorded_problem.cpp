@@ -360,7 +360,7 @@ RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
     problem.trials[k].noise = faults_[k];
   }
   ProblemSurface whole(problem);
-  SearchTeam team(whole.upd(), toCoordinates(whole.getCoordinates(), addShownStart(problem, starts)));
+  SearchTeam team(whole.upd(), toCoordinates(whole.getCoordinates(), starts));
   team.run(BasinSearchOptions{}.max_iterations);
   RecordingFit best;
   for (const LocalSurface& end : team.listEnds()) {
