@@ -46,7 +46,10 @@ MatrixXd addShownStart(const PosteriorProblem& problem, const MatrixXd& given) {
     return given;
   }
   MatrixXd starts(start.size(), given.cols() + 1);
-  starts << given, start;
+  if (given.cols() > 0) {  // else it may have no rows either
+    starts.leftCols(given.cols()) = given;
+  }
+  starts.rightCols(1) = start;
   return starts;
 }
 
