@@ -73,8 +73,8 @@ TEST(ShownStart, StaysWithinTheBounds) {
   EXPECT_EQ(readShown("nuisance.v0.bounds=[-3, 1.5]", makeParabola())[2], 1.5);
 }
 
-TEST(ShownStart, IsNotReadFromASensorWithAnUnknownGain) {
-  EXPECT_EQ(readShown("outputs.x.gain=k", makeParabola()).size(), 0);
+TEST(ShownStart, IsNotReadFromASensorWithAGain) {
+  EXPECT_EQ(readShown("outputs.x.gain=2", makeParabola()).size(), 0);
 }
 
 }  // namespace
