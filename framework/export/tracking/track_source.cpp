@@ -75,10 +75,9 @@ void addPrior(const ExportedTracking& tracking, CTables& tables) {
 void addDrifts(const tracking::Model& model, CTables& tables) {
   const Index p = model.countParameters();
   VectorXd rates(p), stddevs(p), weights(p);
-  std::vector<int> slopes, is_unknown;
+  std::vector<int> slopes;
   for (Index j = 0; j < p; ++j) {
     const tracking::Drift& drift = model.drifts[static_cast<std::size_t>(j)];
-    is_unknown.push_back(std::isnan(drift.rate) ? 1 : 0);
     rates[j] = std::isnan(drift.rate) ? 0.0 : drift.rate;
     if (drift.has_slope) {
       slopes.push_back(static_cast<int>(j));
@@ -86,7 +85,6 @@ void addDrifts(const tracking::Model& model, CTables& tables) {
     stddevs[j] = drift.change_stddev;
     weights[j] = drift.change_weight;
   }
-  tables.addInts("is_unknown", is_unknown, "1: the rate of the parameter's walk is learnt.");
   tables.addWide("known_rates", rates, "Variance of the other walks per second.");
   if (!slopes.empty()) {
     tables.addInts("slope_parameter", slopes, "Parameters that have a slope.");

@@ -57,6 +57,7 @@ class TrackCommand {
   void trackFolder(const fs::path& folder, bool follow) {
     constexpr std::chrono::milliseconds kLook{200};  // a fifth of what a file takes to be seen as complete
     const StopFlags signals = catchSignals();
+    follows_ = true;
     const std::vector<std::string> list = session_.listCounted();
     counted_.insert(list.begin(), list.end());
     SettledFiles files(folder, {".csv", ".txt", ".tsv", ".dat", ".mat"});
@@ -64,7 +65,7 @@ class TrackCommand {
       trackInOrder(files.take(SettledFiles::Clock::now()), signals);
       is_done = !follow && !files.areSettling();
       if (!is_done) {
-        catchSignals();  // again: what is inferred has let go of them
+        keepSignals();
         std::this_thread::sleep_for(kLook);
       }
     }
@@ -143,9 +144,17 @@ class TrackCommand {
       const Json answer = update();
       session_.commit();
       waiting.clear();
+      keepSignals();
       std::cout << formatJson(answer) << '\n';
       std::cout.flush();
     });
+  }
+
+  /// What waited has let go of signals, which end the process then: not between an answer and the next look.
+  void keepSignals() const {
+    if (follows_) {
+      catchSignals();
+    }
   }
 
   /// False, and an error that is printed, where it throws.
@@ -156,6 +165,7 @@ class TrackCommand {
       return true;
     } catch (const std::exception& error) {
       ++errors_;
+      keepSignals();
       std::cout << makeErrorJson(name, context_.start.value_or(0.0), error.what()) << '\n';
       std::cout.flush();
       std::cerr << "twinmap: error: " << error.what() << "\n";
@@ -169,6 +179,7 @@ class TrackCommand {
   const std::optional<double> windows_;  // s
   std::set<std::string> counted_;        // digests, of a folder's files
   int count_ = 0, errors_ = 0;
+  bool follows_ = false;  ///< until a signal
 };
 
 void requireOneSource(const TrackArguments& arguments) {
