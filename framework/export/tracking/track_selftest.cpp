@@ -172,7 +172,7 @@ std::string makeTrackSelftest(const ExportedModel& model, const ExportedTracking
   }
   CTables tables(CNumber::kDouble);
   // The prior of a slope is so wide that what is left of it behind two measurements has lost digits.
-  tables.addNumber("tolerance", tracking.model.countSlopes() > 0 ? 2e-11 : 5e-12,
+  tables.addNumber("tolerance", tracking.model.countSlopes() > 0 ? 2e-11 : 1e-11,
                    "In half-widths of the bounds and parts of the value.");
   tables.addWide("half_widths", half_widths, "Of the bounds.");
   tables.addWide("times", lived.times, "s");
