@@ -1,12 +1,15 @@
 #include "framework/estimation/posterior/problem_surface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
 namespace twinmap {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 std::vector<MeasuredPart> ProblemSurface::makeParts(const PosteriorProblem& problem) {
   std::vector<MeasuredPart> parts;

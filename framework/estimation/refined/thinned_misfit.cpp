@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/experiment/model/parameter_box.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
