@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
+#include "kernels/sampling/weighted_draws.hpp"
 #include "kernels/tracking/modes.hpp"
 
 namespace twinmap {
@@ -57,18 +58,9 @@ MatrixXd toSpace(const BoundedDraws& draws, const TrackSpace& space) {
 }
 
 Belief describe(const MatrixXd& points, const VectorXd& weights, const std::vector<Index>& chosen) {
-  Belief belief{VectorXd::Zero(points.rows()), MatrixXd::Zero(points.rows(), points.rows())};
-  double total = 0.0;
-  for (const Index i : chosen) {
-    belief.mean += weights[i] * points.col(i);
-    total += weights[i];
-  }
-  belief.mean /= total;
-  for (const Index i : chosen) {
-    const VectorXd off = points.col(i) - belief.mean;
-    belief.covariance += weights[i] / total * off * off.transpose();
-  }
-  return belief;
+  const VectorXd own = weights(chosen);
+  const importance::WeightedDraws draws{points(Eigen::all, chosen), own / own.sum()};
+  return {importance::calcMean(draws), importance::calcCovariance(draws)};
 }
 
 double calcAcross(const Belief& belief, const VectorXd& direction) {
@@ -82,17 +74,14 @@ Parts slice(const BoundedDraws& draws, const TrackSpace& space) {
   constexpr std::size_t kSlices = 8;
   constexpr double kBent = 0.5;
   const MatrixXd points = toSpace(draws, space);
-  std::vector<Index> order(static_cast<std::size_t>(points.cols()));
-  std::iota(order.begin(), order.end(), Index{0});
-  const Belief whole = describe(points, draws.weights, order);
+  const Belief whole = describe(points, draws.weights, listIndices(points.cols()));
   const VectorXd direction = linalg::calcSymmetricEigen(whole.covariance).vectors.rightCols(1);
   const VectorXd along = points.transpose() * direction;
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return along[a] < along[b]; });
   Parts parts{{}, VectorXd::Constant(static_cast<Index>(kSlices), 1.0 / kSlices)};
   double across = 0.0;
   std::vector<Index> chosen;
   double share = 0.0;
-  for (const Index i : order) {
+  for (const Index i : sortIndices(along.size(), [&](Index a, Index b) { return along[a] < along[b]; })) {
     chosen.push_back(i);
     share += draws.weights[i];
     const double end = static_cast<double>(parts.beliefs.size() + 1) / kSlices;

@@ -9,6 +9,7 @@
 #include "framework/base/random/random.hpp"
 #include "framework/base/text/csv.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/order.hpp"
 #include "kernels/tracking/tracker.hpp"
 
 namespace twinmap {
@@ -95,9 +96,7 @@ VectorXd calcStddevs(const Estimates& tests) {
   }
   VectorXd stddevs(p);
   for (Index j = 0; j < p; ++j) {
-    VectorXd row = conditional.row(j);
-    std::nth_element(row.begin(), row.begin() + n / 2, row.end());
-    stddevs[j] = row[n / 2];
+    stddevs[j] = calcMedian(VectorXd(conditional.row(j)));
   }
   return stddevs;
 }

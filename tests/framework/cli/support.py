@@ -57,6 +57,17 @@ noise: {stddev: {x: 1e-3}}
 excitation: {F: {unit: N, pulses: [{amplitude: 0, start: 0, end: 9}]}}
 """
 
+WEIGHED_TRIALS = """\
+trials:
+  free:
+    initial: {coordinates: {x: x0}}
+    nuisance: {x0: {bounds: [0.04, 0.06], unit: m}}
+  step:
+    excitation: {F: {unit: N, pulses: [{amplitude: 4, start: 0, end: 9}]}}
+    simulation: {duration: 3}
+    features: [{samples: {outputs: [x], start: 0.1, interval: 0.1, count: 29}}]
+"""
+
 
 def call(*arguments, timeout=1500, **options):
     return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **options)

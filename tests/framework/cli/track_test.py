@@ -5,7 +5,7 @@ import signal
 import subprocess
 import unittest
 
-from support import EXPERIMENTS, TWINMAP, WEIGHED_MACHINE, FolderTestCase, call, read_csv
+from support import EXPERIMENTS, TWINMAP, WEIGHED_MACHINE, WEIGHED_TRIALS, FolderTestCase, call, read_csv
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 TRACKING = """
@@ -13,19 +13,6 @@ tracking:
   drift: {k: {random_walk: {stddev: 0.02, over: 1}}}
   limits: {k: {min: 85}}
 """
-TRIALS = (
-    WEIGHED_MACHINE
-    + """\
-trials:
-  free:
-    initial: {coordinates: {x: x0}}
-    nuisance: {x0: {bounds: [0.04, 0.06], unit: m}}
-  step:
-    excitation: {F: {unit: N, pulses: [{amplitude: 4, start: 0, end: 9}]}}
-    simulation: {duration: 3}
-    features: [{samples: {outputs: [x], start: 0.1, interval: 0.1, count: 29}}]
-"""
-)
 SWING = """
 name: swing
 parameters: {k: {bounds: [80, 120], unit: N/m}}
@@ -205,7 +192,7 @@ class TrackTrials(FolderTestCase):
     def setUpClass(cls):
         super().setUpClass()
         cls.file = cls.folder / "weighed.yaml"
-        cls.file.write_text(TRIALS)
+        cls.file.write_text(WEIGHED_MACHINE + WEIGHED_TRIALS)
         for trial in ("free", "step"):
             recording = cls.folder / f"{trial}.csv"
             result = call("simulate", cls.file, f"trial={trial}", "--noise", "--csv", recording, *TRUTH)

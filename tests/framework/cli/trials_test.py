@@ -4,22 +4,9 @@ import re
 import subprocess
 import unittest
 
-from support import WEIGHED_MACHINE, FolderTestCase, call, read_csv
+from support import WEIGHED_MACHINE, WEIGHED_TRIALS, FolderTestCase, call, read_csv
 
-EXPERIMENT = (
-    WEIGHED_MACHINE
-    + """\
-design: {train: {samples: 100}, test: {samples: 100}}
-trials:
-  free:
-    initial: {coordinates: {x: x0}}
-    nuisance: {x0: {bounds: [0.04, 0.06], unit: m}}
-  step:
-    excitation: {F: {unit: N, pulses: [{amplitude: 4, start: 0, end: 9}]}}
-    simulation: {duration: 3}
-    features: [{samples: {outputs: [x], start: 0.1, interval: 0.1, count: 29}}]
-"""
-)
+EXPERIMENT = WEIGHED_MACHINE + "design: {train: {samples: 100}, test: {samples: 100}}\n" + WEIGHED_TRIALS
 TRUTH = ["parameters.k=95", "parameters.m=1.2"]
 
 

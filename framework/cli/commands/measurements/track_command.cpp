@@ -101,16 +101,16 @@ class TrackCommand {
   void trackInOrder(const std::vector<fs::path>& files, const StopFlags& signals) {
     std::vector<std::pair<double, fs::path>> timed;
     for (const fs::path& file : files) {
-      timed.emplace_back(readTimeOf(file), file);
+      if (counted_.insert(toHex(calcFileDigest(file))).second) {
+        timed.emplace_back(readTimeOf(file), file);
+      }
     }
     std::sort(timed.begin(), timed.end());
     for (const auto& [time, file] : timed) {
       if (signals.stop) {
         return;
       }
-      if (counted_.insert(toHex(calcFileDigest(file))).second) {
-        trackFile(file);
-      }
+      trackFile(file);
     }
   }
 
