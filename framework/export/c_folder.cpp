@@ -276,7 +276,7 @@ std::string adviseOnSize(const CSource& source, const CFolderOptions& options) {
 std::string writeTracker(const std::filesystem::path& folder, const CFolderOptions& options,
                          const ExportedModel& model, const std::vector<TestedMeasurement>& measurements) {
   const std::string& prefix = options.c.prefix;
-  const ExportedTracking tracking = makeExportedTracking(options.tracking, model.experiment.model);
+  const ExportedTracking tracking = makeExportedTracking(options.tracking, model);
   const CTrackSource source = makeTrackSource(model, tracking, prefix);
   writeTextFile(folder / (prefix + "_track.h"), source.header);
   writeTextFile(folder / (prefix + "_track.c"), source.source);

@@ -150,6 +150,7 @@ constexpr const char* kFeatures = "/features/name";
 constexpr const char* kExperiment = "/experiment";
 constexpr const char* kMap = "/map";
 constexpr const char* kTrust = "/trust";
+constexpr const char* kSharedError = "/shared_error";
 constexpr const char* kReduction = "/reduction";
 
 }  // namespace
@@ -166,6 +167,9 @@ void writeTrainedFile(const std::filesystem::path& path, const TrainedFile& stor
     file.writeAttribute(kMap, "kind", map.getKind());
     if (stored.model.trust) {
       writeTrustModel(file, kTrust, *stored.model.trust, map.findForward().get());
+    }
+    if (stored.model.shared_error.size() > 0) {
+      file.write(kSharedError, stored.model.shared_error);
     }
     if (stored.reduction) {
       writeReduction(file, kReduction, *stored.reduction);
@@ -189,6 +193,12 @@ TrainedFile readTrainedFile(const std::filesystem::path& path, Hdf5Seal seal) {
     stored.model.trust = readTrustModel(file, kTrust, stored.model.map->findForward());
     if (stored.model.trust->unknown < stored.model.map->getResidualCorrelation().rows()) {
       throw std::runtime_error(path.string() + ": " + kTrust + " has fewer parameters than " + kMap);
+    }
+  }
+  if (file.contains(kSharedError)) {
+    stored.model.shared_error = file.readVector(kSharedError);
+    if (stored.model.shared_error.size() != static_cast<Index>(stored.parameters.size())) {
+      throw std::runtime_error(path.string() + ": " + kSharedError + " has not one number per parameter");
     }
   }
   if (file.contains(std::string(kReduction) + "/center")) {

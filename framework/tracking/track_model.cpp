@@ -66,13 +66,16 @@ std::vector<std::string> listConditions(const TrackingSpec& tracking) {
   return names;
 }
 
-tracking::Model makeTrackModel(const TrackingSpec* tracking, const ModelSpec& model,
-                               const TrackSpace& space) {
+tracking::Model makeTrackModel(const TrackingSpec* tracking, const ModelSpec& model, const TrackSpace& space,
+                               const Eigen::VectorXd& shared_error) {
   tracking::Model made;
   const tracking::Belief prior = makeTrackPrior(model, space);
   made.mean = prior.mean;
   made.covariance = prior.covariance;
   made.drifts.resize(model.parameters.size());
+  for (Eigen::Index j = 0; j < shared_error.size(); ++j) {
+    made.drifts[static_cast<std::size_t>(j)].shared_error = shared_error[j];
+  }
   if (tracking == nullptr) {
     for (tracking::Drift& drift : made.drifts) {
       drift.rate = kUnknown;

@@ -102,7 +102,7 @@ struct TrackSession::Parts {
         trials(makeInferences(source, options)),
         conditions(options.tracking ? listConditions(*options.tracking) : std::vector<std::string>{}),
         space(getModel().parameters),
-        model(makeTrackModel(findSpec(), getModel(), space)),
+        model(makeTrackModel(findSpec(), getModel(), space, findSharedError())),
         prior(makeTrackPrior(getModel(), space)) {
     std::optional<LoadedTrack> loaded = readTrackFile(state, identity, model, options.lag);
     history.emplace(getHistoryFile(), loaded ? loaded->history_bytes : 0);
@@ -134,6 +134,12 @@ struct TrackSession::Parts {
   }
 
   const ModelSpec& getModel() const { return source.getModel(); }
+  /// Of a run whose estimates are not refined; what is simulated has none.
+  Eigen::VectorXd findSharedError() const {
+    const Inferrer* trained = source.getMembers().front().source->findTrained();
+    return trained != nullptr && !trials.front().inference->refines() ? trained->getModel().shared_error
+                                                                      : Eigen::VectorXd();
+  }
   TrialInference& findTrial(const std::string& trial) { return trials[source.find(trial)]; }
   const TrackingSpec* findSpec() const { return options.tracking ? &*options.tracking : nullptr; }
   TrackView view() const { return {getModel().parameters, space, findSpec()}; }

@@ -14,6 +14,9 @@ struct Drift {
   bool has_slope = false;  ///< constant, unknown: one unit of the parameter within the first interval at most
   double change_stddev = 0.0;  ///< of a sudden change; 0: three of a measurement
   double change_weight = 1.0;  ///< how much likelier it changes than others
+  /// Of an error that all measurements share, so that it does not average out: its standard deviation over
+  /// that of a measurement.
+  double shared_error = 0.0;
 };
 
 /// A condition that a parameter follows: it is level + coefficient (condition - its first value).

@@ -289,7 +289,15 @@ Belief Tracker::calcBelief() const {
     belief.covariance.row(j) *= scale;
     belief.covariance.col(j) *= scale;
   }
+  belief.covariance.diagonal().head(model_.countParameters()) += calcSharedVariances();
   return belief;
+}
+
+VectorXd Tracker::calcSharedVariances() const {
+  return VectorXd::NullaryExpr(model_.countParameters(), [&](Index j) {
+    const double share = model_.drifts[static_cast<std::size_t>(j)].shared_error;
+    return share > 0.0 ? share * share * state_.variances[j] : 0.0;
+  });
 }
 
 }  // namespace twinmap::tracking

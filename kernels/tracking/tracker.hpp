@@ -51,8 +51,10 @@ class Tracker {
   const TrackerState& getState() const { return state_; }
   void setState(TrackerState state) { state_ = std::move(state); }
 
-  /// The belief now, over all rates.
+  /// The belief now, over all rates, with the errors that all measurements share.
   Belief calcBelief() const;
+  /// p: variances of these errors.
+  Eigen::VectorXd calcSharedVariances() const;
   /// Variance per unit of time of each parameter (p): the mean of what is known, and as many standard
   /// deviations of it above.
   Eigen::VectorXd calcRates(double above = 0.0) const;

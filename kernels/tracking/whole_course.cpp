@@ -162,6 +162,9 @@ WholeCourse calcWholeCourse(const Model& model, const std::vector<Measurement>& 
   for (std::size_t u = 0; u < run.tracker.getState().filters.size(); ++u) {
     integrateRates(run, u, course.smoothed);
   }
+  const MatrixXd variances =
+      course.smoothed.stddevs.cwiseAbs2().colwise() + run.tracker.calcSharedVariances();
+  course.smoothed.stddevs = variances.cwiseSqrt();
   return course;
 }
 

@@ -38,7 +38,7 @@ void benchInference(const Inferrer& inferrer, const Eigen::MatrixXd& measured) {
     }
   })->Unit(benchmark::kMicrosecond);
   benchmark::RegisterBenchmark("infer and judge", [&](benchmark::State& state) {
-    Inferrer::Workspace workspace(inferrer);
+    OnlineWorkspace workspace(inferrer.getModel());
     Eigen::Index i = 0;
     for (auto _ : state) {
       benchmark::DoNotOptimize(inferrer.infer(measured.col(i), known, workspace).by_estimator.mean.data());
@@ -51,7 +51,7 @@ void benchRefinement(const Inferrer& inferrer, const SimulatorRefiner& refiner,
                      const Eigen::MatrixXd& measured) {
   benchmark::RegisterBenchmark("infer, judge and refine", [&](benchmark::State& state) {
     const Eigen::VectorXd known;
-    Inferrer::Workspace workspace(inferrer);
+    OnlineWorkspace workspace(inferrer.getModel());
     const TrustModel* trust = inferrer.getTrustModel() ? &*inferrer.getTrustModel() : nullptr;
     Eigen::Index i = 0, simulations = 0;
     for (auto _ : state) {

@@ -21,6 +21,7 @@
 #include "framework/data/measurement/files/table.hpp"
 #include "framework/data/noise/noise.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/files/tracking_file.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/models/make_simulator.hpp"
@@ -42,6 +43,7 @@ struct Options {
                                        {"worn", 0},                  // number of the parameter that steps
                                        {"at", 100},                  // the measurement before which it steps
                                        {"bad", 0},      // share of measurements that are of another machine
+                                       {"refine", 0},   // whether on the simulator, as track does by itself
                                        {"dropout", 0},  // share of measurements that are not there
                                        {"decay", 0}};   // whether nuisance parameters go from .95 of their
                                                         // range to .05 of it, instead of anywhere
@@ -156,10 +158,10 @@ class Study {
   Study(const fs::path& run, const std::string& file, fs::path folder, const Options& options)
       : options_(options),
         folder_(std::move(folder)),
-        source_(run),
+        twin_(run),
         workshop_(loadExperiment(file, options.machine), options) {
-    track_.session.refine = false;
-    track_.tracking = folder_ / "tracking.yaml";
+    track_.session.refine = options["refine"] > 0.0;
+    const fs::path tracking = folder_ / "tracking.yaml";
     std::string section = "tracking:\n  time: {}\n";
     if (!options.drift.empty()) {
       section = "tracking:\n  drift:\n";
@@ -167,7 +169,8 @@ class Study {
         section += "    " + workshop_.getParameter(j).name.text + ": " + options.drift + "\n";
       }
     }
-    writeTextFile(track_.tracking, section);
+    writeTextFile(tracking, section);
+    track_.tracking = loadTracking(tracking.string());
     findStddevs();
   }
 
@@ -194,7 +197,8 @@ class Study {
   void findStddevs() {
     constexpr int kMachines = 21;
     std::mt19937 random(99);
-    const std::unique_ptr<MeasurementInference> inference = source_.makeSession(track_.session);
+    const std::unique_ptr<MeasurementInference> inference =
+        twin_.getMembers().front().source->makeSession(track_.session);
     MatrixXd stddevs(workshop_.countParameters(), kMachines);
     for (int i = 0; i < kMachines; ++i) {
       const std::string text =
@@ -223,7 +227,7 @@ class Study {
     const std::vector<std::string> files = workshop_.measure(measured, 1000 + life);
     const fs::path state = folder_ / fmt::format("life{}.h5", life);
     fs::remove(fs::path(state).replace_extension(".jsonl"));
-    TrackSession session(source_, state, track_);
+    TrackSession session(twin_, state, track_);
     std::vector<Index> there;
     Json alarms = Json::array(), last;
     for (Index i = 0; i < truth.cols(); ++i) {
@@ -299,7 +303,7 @@ class Study {
 
   const Options& options_;
   const fs::path folder_;
-  const InferenceSource source_;
+  const TwinSource twin_;
   const Workshop workshop_;
   TrackOptions track_;
   VectorXd stddev_;

@@ -39,7 +39,7 @@ void exportMap(const ExportArguments& arguments) {
     const ExportedModel model = loadExportedModel(arguments.run);
     std::optional<ExportedTracking> tracker;
     if (arguments.track) {
-      tracker = makeExportedTracking(tracking, model.experiment.model);
+      tracker = makeExportedTracking(tracking, model);
     }
     const bool compiled = writeFmu(model, arguments.fmu, arguments.fmi, tracker ? &*tracker : nullptr);
     std::cout << fmt::format(

@@ -12,6 +12,9 @@ namespace twinmap {
 struct OnlineModel {
   std::shared_ptr<const Estimator> map;  ///< processes compressed; a surrogate is that of the trust model
   std::optional<TrustModel> trust;       ///< none where a feature has no noise or the simulations are too few
+  /// p: root mean square error of the map without noise, over its stated standard deviation. All
+  /// measurements of one machine have it alike. Empty where nobody looked.
+  Eigen::VectorXd shared_error{};
 };
 
 }  // namespace twinmap

@@ -4,12 +4,15 @@
 
 namespace twinmap {
 
-ExportedTracking makeExportedTracking(const std::optional<TrackingSpec>& tracking, const ModelSpec& model) {
+ExportedTracking makeExportedTracking(const std::optional<TrackingSpec>& tracking,
+                                      const ExportedModel& model) {
+  const ModelSpec& machine = model.experiment.model;
   if (tracking) {
-    checkTracking(*tracking, model);
+    checkTracking(*tracking, machine);
   }
-  const TrackSpace space(model.parameters);
-  return {space, makeTrackPrior(model, space), makeTrackModel(tracking ? &*tracking : nullptr, model, space),
+  const TrackSpace space(machine.parameters);
+  return {space, makeTrackPrior(machine, space),
+          makeTrackModel(tracking ? &*tracking : nullptr, machine, space, model.online.shared_error),
           tracking ? listConditions(*tracking) : std::vector<std::string>{}};
 }
 

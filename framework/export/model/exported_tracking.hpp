@@ -6,6 +6,7 @@
 
 #include "framework/experiment/experiment_spec.hpp"
 #include "framework/experiment/tracking_spec.hpp"
+#include "framework/export/model/exported_model.hpp"
 #include "framework/tracking/track_space.hpp"
 #include "kernels/tracking/belief.hpp"
 #include "kernels/tracking/model.hpp"
@@ -21,6 +22,7 @@ struct ExportedTracking {
 };
 
 /// tracking: none: all parameters walk at unknown rates. Throws ExperimentError as checkTracking() does.
-ExportedTracking makeExportedTracking(const std::optional<TrackingSpec>& tracking, const ModelSpec& model);
+ExportedTracking makeExportedTracking(const std::optional<TrackingSpec>& tracking,
+                                      const ExportedModel& model);
 
 }  // namespace twinmap

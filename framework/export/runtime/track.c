@@ -978,6 +978,12 @@ static void average_rates(twinmap_track *track, belief_t *belief)
     }
   }
 #endif
+  {
+    int j;
+    for (j = 0; j < P; ++j) {
+      belief->covariance[j * N + j] += shared_variance[j] > 0.0 ? shared_variance[j] * track->variances[j] : 0.0;
+    }
+  }
 }
 
 static void describe_walks(twinmap_track *track, const double *unit, twinmap_track_answer *answer)

@@ -74,7 +74,7 @@ void addPrior(const ExportedTracking& tracking, CTables& tables) {
 
 void addDrifts(const tracking::Model& model, CTables& tables) {
   const Index p = model.countParameters();
-  VectorXd rates(p), stddevs(p), weights(p);
+  VectorXd rates(p), stddevs(p), weights(p), shared(p);
   std::vector<int> slopes;
   for (Index j = 0; j < p; ++j) {
     const tracking::Drift& drift = model.drifts[static_cast<std::size_t>(j)];
@@ -84,6 +84,7 @@ void addDrifts(const tracking::Model& model, CTables& tables) {
     }
     stddevs[j] = drift.change_stddev;
     weights[j] = drift.change_weight;
+    shared[j] = drift.shared_error * drift.shared_error;
   }
   tables.addWide("known_rates", rates, "Variance of the other walks per second.");
   if (!slopes.empty()) {
@@ -91,6 +92,7 @@ void addDrifts(const tracking::Model& model, CTables& tables) {
   }
   tables.addWide("change_stddev", stddevs, "Of a sudden change; 0: three of a measurement.");
   tables.addWide("change_weight", weights, "How much likelier the parameter changes than others.");
+  tables.addWide("shared_variance", shared, "Of an error that all measurements share, over one's variance.");
 }
 
 void addRates(const std::vector<Index>& unknown, CTables& tables) {

@@ -18,6 +18,7 @@
 #include "framework/inference/refiner.hpp"
 #include "framework/simulation/simulator_team.hpp"
 #include "framework/study/pipeline/evaluate_estimates.hpp"
+#include "framework/study/pipeline/shared_error.hpp"
 #include "framework/study/pipeline/training/store_map.hpp"
 
 namespace twinmap {
@@ -202,6 +203,7 @@ InferredTests inferTestSamples(const Study& study, const PreparedData& data, Tra
     tests.inferred = refines ? inferAll(map.online, test) : std::vector<InferredMeasurement>();
     return predict(test, map, tests.inferred);
   });
+  map.online.shared_error = calcSharedError(study, data, map);
   if (trust != nullptr) {
     trust->coverage =
         recordCoverage(summarizeMap(map.name, parameters, test.parameters, tests.by_estimator, {}));

@@ -181,6 +181,39 @@ TEST(Tracker, HoldsWhatItSaysWhereOneInTwentyIsBad) {
   EXPECT_LT(static_cast<double>(held) / all, 0.975);
 }
 
+// An estimator that is not refined errs in the same way of the same machine, however often that is measured.
+TEST(Tracker, HoldsWhatItSaysWhereMeasurementsShareAnError) {
+  constexpr double kShared = 0.5;  // of a measurement's standard deviation
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  int filtered = 0, smoothed = 0, blind = 0;
+  constexpr int kLives = 100, kMeasurements = 100;
+  for (unsigned l = 0; l < kLives; ++l) {
+    LivingMachine machine(1, {}, l);
+    Model model = testing::makeModel(1, 0.0);
+    model.drifts[0].shared_error = kShared;
+    const double error = kShared * normal(random);
+    std::vector<Measurement> measurements;
+    for (int i = 0; i < kMeasurements; ++i) {
+      measurements.push_back(machine.measure());
+      measurements.back().values.array() += error;
+    }
+    const double truth = machine.getTruth()[0];
+    const auto holds = [&](const Course& course) {
+      return std::abs(course.means(0, kMeasurements - 1) - truth) <
+             1.96 * course.stddevs(0, kMeasurements - 1);
+    };
+    const WholeCourse course = calcWholeCourse(model, measurements);
+    filtered += holds(course.filtered) ? 1 : 0;
+    smoothed += holds(course.smoothed) ? 1 : 0;
+    model.drifts[0].shared_error = 0.0;
+    blind += holds(calcWholeCourse(model, measurements).filtered) ? 1 : 0;
+  }
+  EXPECT_GE(filtered, 89);  // 95 are expected of 100: at most three standard errors less
+  EXPECT_EQ(smoothed, filtered);
+  EXPECT_LT(blind, 60);
+}
+
 TEST(Tracker, EstimatesRatesWithinAFactorOfTwo) {
   constexpr int kLives = 40;
   int within = 0;

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/random/random.hpp"
 #include "framework/study/pipeline/baselines.hpp"
 #include "framework/study/pipeline/calibrate_posteriors.hpp"
+#include "framework/study/pipeline/shared_error.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "tests/framework/support/linear_simulator.hpp"
 #include "tests/lu.hpp"
@@ -182,6 +184,31 @@ TEST_F(LinearStudy, PosteriorsThatAreNotReliableAreCountedAndWarnedOf) {
   found = calibrate(posteriors);  // 49 are left
   EXPECT_FALSE(found.calibration.has_value());
   EXPECT_NE(found.notes.warnings.at(0).text.find("49 of 200 test samples"), std::string::npos);
+}
+
+/// A map whose errors are known, of a test set whose first sample failed.
+TEST_F(LinearStudy, ErrorsThatMeasurementsShareAreThoseWithoutNoise) {
+  PreparedData data;
+  data.labelled = sets_;
+  Trajectories& test = data.sets.test;
+  test.responses = MatrixXd::Constant(kRows, kTests + 1, std::numeric_limits<double>::quiet_NaN());
+  test.responses.rightCols(kTests) = makeRows() * sets_.test.parameters;
+  test.statuses.assign(static_cast<std::size_t>(kTests + 1), SampleStatus{});
+  test.statuses.front().ok = false;
+  data.labelled.test.inputs.resize(0, kTests);
+  TrainedMap map;
+  map.predict = [](const MatrixXd& features, const MatrixXd&) {
+    const VectorXd off = (VectorXd(2) << 0.1, -0.2).finished(),
+                   stddev = (VectorXd(2) << 0.05, 0.4).finished();
+    Estimates estimates;
+    estimates.mean = (calcInverse() * makeRows().transpose() * features).colwise() + off;
+    estimates.stddev = stddev.replicate(1, features.cols());
+    return estimates;
+  };
+  const Study study{experiment_, simulator_, extractor_, noise_, nullptr, "", {}};
+  const VectorXd shared = calcSharedError(study, data, map);
+  EXPECT_NEAR(shared[0], 2.0, 1e-9);
+  EXPECT_NEAR(shared[1], 0.5, 1e-9);
 }
 
 }  // namespace
