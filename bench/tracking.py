@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Holds `twinmap track` to its bars and writes a page: lives of machines, false alarms, delays, changes that are none.
 
-    bench/tracking.py BUILD STORE --out docs/benchmarks/tracking.md [--machines 200] [--confounded 40] [--seed 1]
+    bench/tracking.py BUILD STORE --out docs/benchmarks/tracking.md [--machines 200] [--elsewhere 8] [--confounded 40] [--seed 1]
 
 BUILD is the folder of a build with bench/all (kernels_tracking_lives, machine_lives and twinmap). STORE is a folder: runs of the
 mechanisms in bench/framework/tracking, and each figure that is finished (figures.jsonl), so that another call goes on. Delete it
@@ -59,6 +59,20 @@ MACHINES = {
 }
 
 
+#: Machines of other kinds, below experiments/.
+EXPERIMENTS = {
+    "two_beam": "two_beam/best",
+    "cart": "duffing/cart",
+    "double_pendulum": "mechanisms/double_pendulum_mild",
+    "released_pendulum": "mechanisms/released_pendulum",
+    "stick_slip": "mechanisms/stick_slip",
+    "end_stops": "mechanisms/end_stops",
+    "cubic_chain": "mechanisms/cubic_chain",
+    "spinning_top": "mechanisms/spinning_top",
+    "servo_axis": "mechanisms/servo_axis",
+}
+
+
 class Store:
     """Figures by the command that makes them."""
 
@@ -86,9 +100,8 @@ class Store:
     def train(self, mechanism):
         folder = self.folder / mechanism
         if not (folder / "maps.h5").exists():
-            file = ROOT / f"bench/framework/tracking/{mechanism}.yaml"
-            command = [self.build / "framework/cli/twinmap", "run", file, "--out", folder, "--quiet"]
-            subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+            command = [self.build / "framework/cli/twinmap", "run", find_file(mechanism), "refine=never"]
+            subprocess.run([*command, "--out", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
         return folder
 
     def simulate(self, mechanism, lives, *machine, **options):
@@ -98,10 +111,16 @@ class Store:
         for first in range(0, lives, 10):
             key = " ".join(["machine", mechanism, f"first={first}", *machine, *words])
             command = [self.build / "bench/framework/machine_lives", self.train(mechanism),
-                       ROOT / f"bench/framework/tracking/{mechanism}.yaml", self.folder / "states",
+                       find_file(mechanism), self.folder / "states",
                        f"first={first}", f"lives={min(10, lives - first)}", *machine, *words]  # fmt: skip
             together = add(together, self.get(key, command))
         return together
+
+
+def find_file(mechanism):
+    if mechanism in EXPERIMENTS:
+        return ROOT / f"experiments/{EXPERIMENTS[mechanism]}.yaml"
+    return ROOT / f"bench/framework/tracking/{mechanism}.yaml"
 
 
 def add(one, other):
@@ -254,6 +273,24 @@ def write_machines(store, machines):
             )
 
 
+def write_elsewhere(store, lives):
+    yield "\n## Machines of other kinds\n"
+    yield f"{lives} lives of 80 measurements of the machines in `experiments/`, whose parameters are constant: by the run's estimator alone, whose"
+    yield "own error does not average out, and refined on the simulator, as `twinmap track` does by itself.\n"
+    yield "| mechanism | by the estimator: filtered | smoothed | refined: filtered | smoothed | alarms | a step of 5: delays |"
+    yield "|---|--:|--:|--:|--:|--:|---|"
+    for mechanism in EXPERIMENTS:
+        quick, refined, step = (
+            store.simulate(mechanism, lives, measurements=80, **options)
+            for options in ({}, {"refine": 1}, {"refine": 1, "step": 5, "at": 40})
+        )
+        alarms = sum(map(len, quick["alarms"] + refined["alarms"]))
+        yield (
+            f"| {mechanism} | {share(quick['filtered'])} | {share(quick['smoothed'])} | {share(refined['filtered'])} | "
+            f"{share(refined['smoothed'])} | {alarms} | {', '.join(f'{delay:.0f}' for delay in step['delays'])} |"
+        )
+
+
 def is_named(alarms, begin):
     """Whether a change was announced, without a rival, from a time on."""
     return any(not alarm.get("rivals") for alarm in alarms if alarm["announced"] >= begin)
@@ -306,9 +343,10 @@ def main():
     parser.add_argument("store", type=Path)
     parser.add_argument("--out", type=Path)
     parser.add_argument("--machines", type=int, default=200)
+    parser.add_argument("--elsewhere", type=int, default=8)
     parser.add_argument("--confounded", type=int, default=40)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--parts", default="lives,exact,alarms,delays,machines,confounded")
+    parser.add_argument("--parts", default="lives,exact,alarms,delays,machines,elsewhere,confounded")
     arguments = parser.parse_args()
     store = Store(arguments.store.resolve(), arguments.build.resolve())
     parts = {
@@ -317,6 +355,7 @@ def main():
         "alarms": lambda: write_alarms(store, arguments.seed),
         "delays": lambda: write_delays(store, arguments.seed),
         "machines": lambda: write_machines(store, arguments.machines),
+        "elsewhere": lambda: write_elsewhere(store, arguments.elsewhere),
         "confounded": lambda: write_confounded(store, arguments.confounded),
     }
     lines = [INTRODUCTION]

@@ -12,8 +12,8 @@ namespace twinmap {
 struct OnlineModel {
   std::shared_ptr<const Estimator> map;  ///< processes compressed; a surrogate is that of the trust model
   std::optional<TrustModel> trust;       ///< none where a feature has no noise or the simulations are too few
-  /// p: root mean square error of the map without noise, over its stated standard deviation. All
-  /// measurements of one machine have it alike. Empty where nobody looked.
+  /// p: standard deviation of the map's errors without noise, over the stated one. All measurements of one
+  /// machine have such an error alike. Empty where nobody looked.
   Eigen::VectorXd shared_error{};
 };
 

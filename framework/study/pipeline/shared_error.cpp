@@ -2,12 +2,25 @@
 
 #include <algorithm>
 
+#include "framework/estimation/interval_factor.hpp"
+
 namespace twinmap {
+namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
-Eigen::VectorXd calcSharedError(const Study& study, const PreparedData& data, const TrainedMap& map) {
+/// The standard deviation of the normal distribution that holds 95 % of the sizes in its 95 % interval.
+double calcSpread(VectorXd sizes) {
+  const Index place = std::min<Index>(sizes.size() * 95 / 100, sizes.size() - 1);
+  std::nth_element(sizes.begin(), sizes.begin() + place, sizes.end());
+  return sizes[place] / kNormal95;
+}
+
+}  // namespace
+
+VectorXd calcSharedError(const Study& study, const PreparedData& data, const TrainedMap& map) {
   constexpr Index kMost = 200;
   const LabelledFeatures& test = data.labelled.test;
   const std::vector<int> successful = findSuccessful(data.sets.test);
@@ -15,11 +28,9 @@ Eigen::VectorXd calcSharedError(const Study& study, const PreparedData& data, co
   const std::vector<int> first(successful.begin(), successful.begin() + count);
   const MatrixXd features = study.extractor.extract(data.sets.test.responses(Eigen::all, first));
   const Estimates estimates = map.predict(features, test.inputs.leftCols(count));
-  return ((estimates.mean - test.parameters.leftCols(count)).array() / estimates.stddev.array())
-      .square()
-      .rowwise()
-      .mean()
-      .sqrt();
+  const MatrixXd sizes =
+      ((estimates.mean - test.parameters.leftCols(count)).array() / estimates.stddev.array()).abs();
+  return VectorXd::NullaryExpr(sizes.rows(), [&](Index j) { return calcSpread(sizes.row(j)); });
 }
 
 }  // namespace twinmap

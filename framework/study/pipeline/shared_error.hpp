@@ -5,8 +5,8 @@
 
 namespace twinmap {
 
-/// OnlineModel::shared_error. The map infers the responses without noise of at most 200 test samples, which
-/// tell a root mean square to 5 %. Features that noise biases (a peak) count as wrong by that: the error is
+/// OnlineModel::shared_error. The map infers the responses without noise of at most 200 test samples, whose
+/// 95 % quantile is known to 10 %. Features that noise biases (a peak) count as wrong by that: the error is
 /// then too large, not too small.
 Eigen::VectorXd calcSharedError(const Study& study, const PreparedData& data, const TrainedMap& map);
 

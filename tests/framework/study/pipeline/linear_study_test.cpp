@@ -6,6 +6,7 @@
 
 #include "framework/base/log/notice.hpp"
 #include "framework/base/random/random.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/study/pipeline/baselines.hpp"
 #include "framework/study/pipeline/calibrate_posteriors.hpp"
 #include "framework/study/pipeline/shared_error.hpp"
@@ -207,8 +208,8 @@ TEST_F(LinearStudy, ErrorsThatMeasurementsShareAreThoseWithoutNoise) {
   };
   const Study study{experiment_, simulator_, extractor_, noise_, nullptr, "", {}};
   const VectorXd shared = calcSharedError(study, data, map);
-  EXPECT_NEAR(shared[0], 2.0, 1e-9);
-  EXPECT_NEAR(shared[1], 0.5, 1e-9);
+  EXPECT_NEAR(shared[0], 2.0 / kNormal95, 1e-9);
+  EXPECT_NEAR(shared[1], 0.5 / kNormal95, 1e-9);
 }
 
 }  // namespace
