@@ -113,9 +113,10 @@ Parts listParts(const Estimate& estimate, const TrackSpace& space) {
 }  // namespace
 
 tracking::Measurement makeTrackMeasurement(const Estimate& estimate, const TrackSpace& space,
-                                           const tracking::Belief& prior) {
+                                           const TrackPrior& prior) {
   const Parts parts = listParts(estimate, space);
-  return makeLikelihood(prior, parts.beliefs, parts.weights);
+  return makeLikelihood(prior.belief, parts.beliefs, parts.weights,
+                        estimate.isRefined() ? std::vector<Index>{} : prior.uniform);
 }
 
 }  // namespace twinmap

@@ -69,7 +69,7 @@ std::vector<std::string> listConditions(const TrackingSpec& tracking) {
 tracking::Model makeTrackModel(const TrackingSpec* tracking, const ModelSpec& model, const TrackSpace& space,
                                const Eigen::VectorXd& shared_error) {
   tracking::Model made;
-  const tracking::Belief prior = makeTrackPrior(model, space);
+  const tracking::Belief prior = makeTrackPrior(model, space).belief;
   made.mean = prior.mean;
   made.covariance = prior.covariance;
   made.drifts.resize(model.parameters.size());

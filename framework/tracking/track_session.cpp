@@ -88,7 +88,7 @@ struct TrackSession::Parts {
   std::vector<std::string> conditions;
   TrackSpace space;
   tracking::Model model;
-  tracking::Belief prior;
+  TrackPrior prior;
   std::optional<TrackedTwin> twin;
   std::optional<TrackHistory> history;
   bool changed = false;  ///< since commit()

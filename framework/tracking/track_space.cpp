@@ -36,12 +36,13 @@ double TrackSpace::calcSlope(Index j, double value) const {
   return 1.0 / (half_width_[j] * (is_log_[static_cast<std::size_t>(j)] ? value : 1.0));
 }
 
-tracking::Belief makeTrackPrior(const ModelSpec& model, const TrackSpace& space) {
+TrackPrior makeTrackPrior(const ModelSpec& model, const TrackSpace& space) {
   const BoxPrior box = makeBoxPrior(model);
   const Index p = space.count(), u = box.count();
   const MatrixXd covariance =
       linalg::solveSemidefinite(box.calcInformation(), MatrixXd::Identity(u, u)).topLeftCorner(p, p);
-  tracking::Belief prior{VectorXd(p), MatrixXd(p, p)};
+  TrackPrior made{{VectorXd(p), MatrixXd(p, p)}, {}};
+  tracking::Belief& prior = made.belief;
   VectorXd scale(p);
   for (Index j = 0; j < p; ++j) {
     const Bounds& bounds = model.parameters[static_cast<std::size_t>(j)].bounds;
@@ -51,7 +52,14 @@ tracking::Belief makeTrackPrior(const ModelSpec& model, const TrackSpace& space)
     scale[j] = half_width * space.calcSlope(j, value);
   }
   prior.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
-  return prior;
+  for (Index j = 0; j < p; ++j) {
+    const std::optional<PriorSpec>& stated = model.parameters[static_cast<std::size_t>(j)].prior;
+    const bool is_log_uniform = stated && std::holds_alternative<LogUniformPrior>(stated->kind);
+    if (is_log_uniform || box.within.row(j).isZero(0.0)) {
+      made.uniform.push_back(j);
+    }
+  }
+  return made;
 }
 
 }  // namespace twinmap

@@ -26,6 +26,11 @@ class TrackSpace {
 };
 
 /// What is known of the parameters before any measurement, in these coordinates.
-tracking::Belief makeTrackPrior(const ModelSpec& model, const TrackSpace& space);
+struct TrackPrior {
+  tracking::Belief belief;
+  std::vector<Eigen::Index>
+      uniform;  ///< parameters that are, between -1 and 1; the belief has their variance
+};
+TrackPrior makeTrackPrior(const ModelSpec& model, const TrackSpace& space);
 
 }  // namespace twinmap

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/tracking/box_site.hpp"
 
 namespace twinmap::tracking {
 
@@ -12,34 +13,75 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Measurement makeLikelihood(const Belief& before, const Belief& after) {
+namespace {
+
+/// In coordinates in which the belief before is of mean 0 and unit variance: the information that is left of
+/// the one after it, by eigenvectors, and how far each pulls.
+struct Gained {
+  VectorXd information, pulls;  // p
+  MatrixXd vectors;             // p x p
+};
+
+Gained calcGained(const linalg::SymmetricEigen& after, const VectorXd& mean) {
+  const VectorXd along = after.vectors.transpose() * mean, values = after.values.cwiseMax(1e-300);
+  return {values.cwiseInverse().array() - 1.0, along.cwiseQuotient(values), after.vectors};
+}
+
+/// The same where factors of some coordinates are taken out, not the belief before.
+Gained calcGained(const linalg::SymmetricEigen& after, const VectorXd& mean, const Belief& before,
+                  const VectorXd& scale, const std::vector<BoxSite>& sites) {
+  const Gained normal = calcGained(after, mean);
+  MatrixXd information = normal.vectors * normal.information.asDiagonal() * normal.vectors.transpose();
+  VectorXd pull = normal.vectors * normal.pulls;
+  for (const BoxSite& site : sites) {
+    const Index j = site.parameter;
+    information(j, j) += 1.0 - scale[j] * scale[j] * site.precision;
+    pull[j] -= scale[j] * (site.shift - site.precision * before.mean[j]);
+  }
+  const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(information);
+  return {eigen.values, eigen.vectors.transpose() * pull, eigen.vectors};
+}
+
+std::vector<BoxSite> listSites(const Belief& after, const std::vector<Index>& uniform) {
+  std::vector<BoxSite> sites;
+  for (const Index j : uniform) {
+    sites.push_back(calcBoxSite(j, after.mean[j], after.covariance(j, j)));
+  }
+  return sites;
+}
+
+}  // namespace
+
+Measurement makeLikelihood(const Belief& before, const Belief& after, const std::vector<Index>& uniform) {
   constexpr double kHardlyMore = 0.9;  // of the standard deviation
   constexpr double kHardly = 1.0 / (kHardlyMore * kHardlyMore) - 1.0;
   constexpr double kNothing = 1e12, kSaysNothing = 1e4;  // variances of the belief before
   const Index p = before.mean.size();
-  // in coordinates in which `before` is of unit variance: information = inverse of the variance after - 1
   const linalg::Cholesky unit = linalg::calcCholesky(before.covariance);
   const MatrixXd half = linalg::solveLower(unit.lower, after.covariance);
   const MatrixXd whitened = linalg::solveLower(unit.lower, half.transpose());
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(0.5 * (whitened + whitened.transpose()));
+  const VectorXd mean = linalg::solveLower(unit.lower, after.mean - before.mean);
+  const Gained gained =
+      uniform.empty() ? calcGained(eigen, mean)
+                      : calcGained(eigen, mean, before, unit.lower.diagonal(), listSites(after, uniform));
   const MatrixXd directions =
-      linalg::solveLower(unit.lower, MatrixXd::Identity(p, p)).transpose() * eigen.vectors;
-  const VectorXd off = eigen.vectors.transpose() * linalg::solveLower(unit.lower, after.mean - before.mean);
+      linalg::solveLower(unit.lower, MatrixXd::Identity(p, p)).transpose() * gained.vectors;
   Measurement measurement;
   measurement.rows.resize(p, p);
   measurement.values.resize(p);
   MatrixXd covariance = MatrixXd::Zero(p, p);
   Index k = 0;
   for (Index i = 0; i < p; ++i) {
-    const double information = 1.0 / std::max(eigen.values[i], 1e-300) - 1.0;
-    const VectorXd axis = unit.lower * eigen.vectors.col(i);  // of the parameters
+    const double information = gained.information[i];
+    const VectorXd axis = unit.lower * gained.vectors.col(i);  // of the parameters
     if (!(information > kHardly)) {
       covariance += kNothing * axis * axis.transpose();
       continue;
     }
     const double root = std::sqrt(information);
     measurement.rows.row(k) = root * directions.col(i).transpose();
-    measurement.values[k] = measurement.rows.row(k).dot(before.mean) + off[i] / (eigen.values[i] * root);
+    measurement.values[k] = measurement.rows.row(k).dot(before.mean) + gained.pulls[i] / root;
     covariance += axis * axis.transpose() / information;
     ++k;
   }
@@ -93,10 +135,11 @@ Belief see(const Model& model, const Measurement& measurement, const VectorXd& r
 
 }  // namespace
 
-Measurement makeLikelihood(const Belief& before, const std::vector<Belief>& after, const VectorXd& weights) {
-  Measurement measurement = makeLikelihood(before, match(after, weights));
+Measurement makeLikelihood(const Belief& before, const std::vector<Belief>& after, const VectorXd& weights,
+                           const std::vector<Index>& uniform) {
+  Measurement measurement = makeLikelihood(before, match(after, weights), uniform);
   for (std::size_t c = 0; after.size() > 1 && c < after.size(); ++c) {
-    const Measurement one = makeLikelihood(before, after[c]);
+    const Measurement one = makeLikelihood(before, after[c], uniform);
     Belief belief = before;
     const double log_density = apply(one.rows, one.values, belief);
     measurement.modes.push_back(

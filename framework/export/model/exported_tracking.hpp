@@ -16,7 +16,7 @@ namespace twinmap {
 /// How parameters move over time, as what leaves twinmap sees it.
 struct ExportedTracking {
   TrackSpace space;
-  tracking::Belief prior;
+  TrackPrior prior;
   tracking::Model model;
   std::vector<std::string> conditions;  ///< columns whose means are given with a measurement
 };

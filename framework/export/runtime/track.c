@@ -116,14 +116,121 @@ static void whiten(const twinmap_result *result, double *whitened)
   }
 }
 
-/* The row of the direction that eigenvector i is, if the measurement says more of it than the prior. Else the
-   parameters' variances have it. */
-static void add_direction(twinmap_track *track, int i, const double *off)
+/* Moments 1 to 4 of the density exp(tilt u - curvature u^2 / 2) between two places, by Simpson's rule. */
+static void calc_moments(double tilt, double curvature, double lower, double upper, double *moments)
 {
-  const double eigenvalue = track->whitened[i * P + i];
-  const double information = 1.0 / (eigenvalue > 1e-300 ? eigenvalue : 1e-300) - 1.0;
+  enum { INTERVALS = 128 };
+  const double step = (upper - lower) / INTERVALS;
+  double place = tilt / curvature, largest, sums[5] = {0.0, 0.0, 0.0, 0.0, 0.0};
+  int i, k;
+  place = place < lower ? lower : place > upper ? upper : place;
+  largest = place * (tilt - 0.5 * curvature * place);
+  for (i = 0; i <= INTERVALS; ++i) {
+    const double u = lower + i * step;
+    double term = exp(u * (tilt - 0.5 * curvature * u) - largest);
+    term *= i == 0 || i == INTERVALS ? 1.0 : i % 2 == 1 ? 4.0 : 2.0;
+    for (k = 0; k < 5; ++k) {
+      sums[k] += term;
+      term *= u;
+    }
+  }
+  for (k = 1; k < 5; ++k) {
+    moments[k] = sums[k] / sums[0];
+  }
+}
+
+/* What the bounds -1 and 1 of a uniform prior have added to an estimate with this mean and variance. */
+static void calc_box_site(double mean, double variance, double *precision, double *shift)
+{
+  const double far = 8.0, reach = 24.0, tolerance = 1e-13, sd = sqrt(variance);
+  double lower = (-1.0 - mean) / sd, upper = (1.0 - mean) / sd, tilt = 0.0, curvature = 1.0, m[5];
+  int i;
+  *precision = 0.0;
+  *shift = 0.0;
+  if (!(lower < 0.0 && upper > 0.0) || (lower < -far && upper > far)) {
+    return;
+  }
+  lower = lower < -reach ? -reach : lower;
+  upper = upper > reach ? reach : upper;
+  for (i = 0; i < 50; ++i) {
+    double by_tilt, by_both, by_curvature, of_square, determinant, more_tilt, more_curvature, size;
+    calc_moments(tilt, curvature, lower, upper, m);
+    by_tilt = m[2] - m[1] * m[1];
+    by_both = m[3] - m[1] * m[2];
+    by_curvature = m[4] - m[2] * m[2];
+    of_square = 1.0 - m[2];
+    determinant = by_tilt * by_curvature - by_both * by_both;
+    more_tilt = (-m[1] * by_curvature - of_square * by_both) / determinant;
+    more_curvature = -2.0 * (of_square * by_tilt + m[1] * by_both) / determinant;
+    size = fabs(more_tilt) > fabs(more_curvature) ? fabs(more_tilt) : fabs(more_curvature);
+    if (size > 1.0) {
+      more_tilt *= 1.0 / size;
+      more_curvature *= 1.0 / size;
+    }
+    tilt += more_tilt;
+    curvature += more_curvature;
+    if (!(curvature > 0.0)) {
+      *precision = 1.0 / variance;
+      *shift = mean / variance;
+      return;
+    }
+    if (size < tolerance) {
+      break;
+    }
+  }
+  *precision = (1.0 - curvature) / variance;
+  *shift = *precision * mean - tilt / sd;
+}
+
+/* The information that a measurement adds, on the diagonal of `whitened`, its directions in `vectors`, and how far
+   each pulls. mean: of the estimate, in coordinates in which the prior is of mean 0 and unit variance. */
+static void calc_gained(twinmap_track *track, const twinmap_result *result, const double *mean, double *pulls)
+{
+  double information[TWINMAP_PARAMETERS], pull[TWINMAP_PARAMETERS];
+  int i, j, k;
+  for (i = 0; i < P; ++i) {
+    const double value = track->whitened[i * P + i] > 1e-300 ? track->whitened[i * P + i] : 1e-300;
+    double along = 0.0;
+    for (j = 0; j < P; ++j) {
+      along += track->vectors[j * P + i] * mean[j];
+    }
+    information[i] = 1.0 / value - 1.0;
+    pulls[i] = along / value;
+  }
+  for (i = 0; i < P; ++i) {
+    pull[i] = dot(track->vectors + i * P, pulls, P);
+    for (j = 0; j < P; ++j) {
+      double sum = 0.0;
+      for (k = 0; k < P; ++k) {
+        sum += track->vectors[i * P + k] * information[k] * track->vectors[j * P + k];
+      }
+      track->whitened[i * P + j] = sum;
+    }
+  }
+  for (j = 0; j < P; ++j) {
+    if (is_uniform[j]) {
+      const double root = prior_lower[j * P + j], unit = calc_unit(j, result->mean[j]);
+      double precision, shift;
+      calc_box_site(to_coordinate(j, result->mean[j]), result->covariance[j * P + j] / (unit * unit), &precision, &shift);
+      track->whitened[j * P + j] += 1.0 - root * root * precision;
+      pull[j] -= root * (shift - precision * prior_mean[j]);
+    }
+  }
+  diagonalize(track->whitened, track->vectors);
+  for (i = 0; i < P; ++i) {
+    pulls[i] = 0.0;
+    for (j = 0; j < P; ++j) {
+      pulls[i] += track->vectors[j * P + i] * pull[j];
+    }
+  }
+}
+
+/* The row of direction i, if the measurement says more of it than the prior. Else the parameters' variances have
+   it. */
+static void add_direction(twinmap_track *track, int i, double pull)
+{
+  const double information = track->whitened[i * P + i];
   const int says = information > hardly_informative;
-  double along = 0.0;
   int j, k;
   for (j = 0; j < P; ++j) {
     double axis = 0.0;
@@ -131,7 +238,6 @@ static void add_direction(twinmap_track *track, int i, const double *off)
       axis += prior_lower[j * P + k] * track->vectors[k * P + i];
     }
     track->own_variance[j] += axis * axis * (says ? 1.0 / information : 1e12);
-    along += off[j] * track->vectors[j * P + i];
   }
   if (says) {
     const double root = sqrt(information);
@@ -143,7 +249,7 @@ static void add_direction(twinmap_track *track, int i, const double *off)
       }
       row[j] *= root;
     }
-    track->value[track->rows] = dot(row, prior_mean, P) + along / (eigenvalue * root);
+    track->value[track->rows] = dot(row, prior_mean, P) + pull / root;
     ++track->rows;
   }
 }
@@ -151,17 +257,18 @@ static void add_direction(twinmap_track *track, int i, const double *off)
 /* The likelihood as rows of a linear measurement: the prior that the estimate contains is taken out. */
 static void take_likelihood(twinmap_track *track, const twinmap_result *result)
 {
-  double off[TWINMAP_PARAMETERS], shift[TWINMAP_PARAMETERS];
+  double mean[TWINMAP_PARAMETERS], pulls[TWINMAP_PARAMETERS], shift[TWINMAP_PARAMETERS];
   int i;
   whiten(result, track->whitened);
   diagonalize(track->whitened, track->vectors);
   for (i = 0; i < P; ++i) {
     shift[i] = to_coordinate(i, result->mean[i]) - prior_mean[i];
-    off[i] = dot(prior_inverse + i * P, shift, i + 1);
+    mean[i] = dot(prior_inverse + i * P, shift, i + 1);
     track->own_variance[i] = 0.0;
   }
+  calc_gained(track, result, mean, pulls);
   for (i = 0; i < P; ++i) {
-    add_direction(track, i, off);
+    add_direction(track, i, pulls[i]);
   }
 }
 

@@ -63,9 +63,15 @@ void addSpace(const ExportedModel& model, const ExportedTracking& tracking, CTab
 }
 
 void addPrior(const ExportedTracking& tracking, CTables& tables) {
-  const MatrixXd lower = linalg::calcCholesky(tracking.prior.covariance).lower;
-  tables.addWide("prior_mean", tracking.prior.mean, "What is known before the first measurement.");
-  tables.addWide("prior_covariance", flattenRows(tracking.prior.covariance), "Its covariance, row by row.");
+  std::vector<int> is_uniform(static_cast<std::size_t>(tracking.space.count()), 0);
+  for (const Index j : tracking.prior.uniform) {
+    is_uniform[static_cast<std::size_t>(j)] = 1;
+  }
+  tables.addInts("is_uniform", is_uniform, "1: the prior is uniform within the bounds.");
+  const MatrixXd lower = linalg::calcCholesky(tracking.prior.belief.covariance).lower;
+  tables.addWide("prior_mean", tracking.prior.belief.mean, "What is known before the first measurement.");
+  tables.addWide("prior_covariance", flattenRows(tracking.prior.belief.covariance),
+                 "Its covariance, row by row.");
   tables.addWide("prior_lower", flattenRows(lower), "Its root L.");
   tables.addWide("prior_inverse",
                  flattenRows(linalg::solveLower(lower, MatrixXd::Identity(lower.rows(), lower.rows()))),
