@@ -159,7 +159,7 @@ class Study {
         source_(run),
         workshop_(loadExperiment(file, options.machine), options) {
     track_.session.refine = false;
-    track_.tracking = folder_ / "tracking.yaml";
+    const fs::path tracking = folder_ / "tracking.yaml";
     std::string section = "tracking:\n  time: {}\n";
     if (!options.drift.empty()) {
       section = "tracking:\n  drift:\n";
@@ -167,7 +167,8 @@ class Study {
         section += "    " + workshop_.getParameter(j).name.text + ": " + options.drift + "\n";
       }
     }
-    writeTextFile(track_.tracking, section);
+    writeTextFile(tracking, section);
+    track_.tracking = findTracking(run, tracking);
     findStddevs();
   }
 
@@ -194,7 +195,8 @@ class Study {
   void findStddevs() {
     constexpr int kMachines = 21;
     std::mt19937 random(99);
-    const std::unique_ptr<MeasurementInference> inference = source_.makeSession(track_.session);
+    const std::unique_ptr<MeasurementInference> inference =
+        source_.getMembers().front().source->makeSession(track_.session);
     MatrixXd stddevs(workshop_.countParameters(), kMachines);
     for (int i = 0; i < kMachines; ++i) {
       const std::string text =
@@ -250,6 +252,7 @@ class Study {
     if (alarm.contains("drift_or_model")) {
       one["time"] = alarm["time"];
       one["rivals"] = alarm["drift_or_model"]["rivals"];
+      one["diagnosis"] = alarm["drift_or_model"].value("diagnosis", Json());
     }
     return one;
   }
@@ -299,7 +302,7 @@ class Study {
 
   const Options& options_;
   const fs::path folder_;
-  const InferenceSource source_;
+  const TwinSource source_;
   const Workshop workshop_;
   TrackOptions track_;
   VectorXd stddev_;

@@ -40,6 +40,18 @@ TEST_F(TrackFile, GoesOnWithTheSameBits) {
   EXPECT_EQ(loaded->twin.getNow().alarm_count, twin_.getNow().alarm_count);
 }
 
+TEST_F(TrackFile, KeepsDiagnoses) {
+  twin_.note({7.0, true, 0, 5.0, R"({"says": "nothing"})"});
+  write(60);
+  const std::optional<LoadedTrack> loaded = read(kIdentity);
+  ASSERT_EQ(loaded->twin.getDiagnoses().size(), 1U);
+  const AlarmDiagnosis& read = loaded->twin.getDiagnoses().front();
+  EXPECT_EQ(read.announced, 7.0);
+  EXPECT_TRUE(read.is_of_several);
+  EXPECT_EQ(read.time, 5.0);
+  EXPECT_EQ(read.answer, R"({"says": "nothing"})");
+}
+
 TEST_F(TrackFile, IsAsLargeAfterMoreMeasurements) {
   write(130);
   const auto size = std::filesystem::file_size(file_);
