@@ -139,12 +139,12 @@ struct TrackSession::Parts {
   }
 
   TrackRecord makeRecord(const MeasurementReader& reader, const Table& table, const std::string& digest,
-                         const MeasurementContext& context) const {
+                         const MeasurementContext& context) {
     TrackRecord record{table.source, digest, ""};
     record.trial = context.trial;
     record.start = context.start;
     const std::optional<double> stated = context.at ? context.at : readTrackTime(table, findSpec());
-    record.measurement.time = stated ? *stated : number(digest);
+    record.measurement.time = stated ? *stated : number(record);
     const Table window = takeWindow(table, reader, context.start);
     record.measurement.conditions = readConditions(window, conditions);
     record.covariates = listCovariates(window, conditions);
@@ -152,14 +152,22 @@ struct TrackSession::Parts {
     return record;
   }
 
-  /// The time of what states none: its number, of what is there already that one's.
-  double number(const std::string& digest) const {
+  /// The time of what states none: its number, of what is there already that one's. Throws MeasurementError
+  /// where that is older than the window, of which no more is known.
+  double number(const TrackRecord& of) {
     for (const TrackRecord& record : twin->getWindow()) {
-      if (record.digest == digest) {
+      if (record.digest == of.digest) {
         return record.measurement.time;
       }
     }
-    return static_cast<double>(twin->getNow().tracker.getState().count + 1);
+    const long long count = twin->getNow().tracker.getState().count;
+    if (count > static_cast<long long>(twin->getWindow().size()) && history->contains(of.digest)) {
+      throw MeasurementError(fmt::format(
+          "{}: was counted before the last {} measurements, and states no time; it is not counted "
+          "again. If it is another measurement, give its time (--at)",
+          of.source, twin->getWindow().size()));
+    }
+    return static_cast<double>(count + 1);
   }
 
   void requirePlace(const TrackRecord& record) const {

@@ -77,6 +77,13 @@ class Track(FolderTestCase):
         again = json.loads(self.track("f.h5", self.files[0]).stdout)["track"]
         self.assertEqual((again["counted"], again["at"], again["measurements"]), (False, 1, 2))
 
+    def test_the_same_older_than_the_lag_without_a_time_is_refused(self):
+        self.track("j.h5", *self.files[:3], "--lag", "2")
+        again = self.track("j.h5", self.files[0], "--lag", "2")
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("was counted before the last 2 measurements, and states no time", again.stderr)
+        self.assertEqual(json.loads(self.track("j.h5", self.files[1], "--lag", "2").stdout)["track"]["measurements"], 3)
+
     def test_what_was_counted_is_answered_without_inferring_it_again(self):
         first = json.loads(self.track("h.h5", self.files[0]).stdout)
         again = json.loads(self.track("h.h5", self.files[0]).stdout)

@@ -1,5 +1,6 @@
 #include "framework/tracking/track_file.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "framework/base/files/atomic_file.hpp"
@@ -91,6 +92,29 @@ TEST_F(TrackFile, HistoryBehindTheStateIsCutOff) {
   EXPECT_EQ(TrackHistory(lines, answered).read(2, 1).size(), 1U);
   EXPECT_EQ(std::filesystem::file_size(lines), answered);
   EXPECT_THROW(TrackHistory(lines, answered + 1), std::runtime_error);
+}
+
+TEST_F(TrackFile, HistoryKnowsWhatWasCounted) {
+  const std::filesystem::path lines = folder_ / "track.jsonl";
+  const std::vector<TrackRecord> records = testing::makeRecords(30);
+  std::vector<std::string> digests;
+  std::uint64_t bytes = 0;
+  for (int i = 0; i < 2; ++i) {  // the second goes on with the file of the first
+    TrackHistory history(lines, bytes);
+    for (int j = 0; j < 20; ++j) {
+      const std::string digest = fmt::format("{:016x}{:016x}", 20 * i + j, 7);
+      EXPECT_FALSE(history.contains(digest));
+      TrackRecord record = records[static_cast<std::size_t>(j)];
+      record.source = "of \"digest\":\"0\".csv";
+      record.digest = digest;
+      history.add(record);
+      digests.push_back(digest);
+      for (const std::string& known : digests) {
+        EXPECT_TRUE(history.contains(known));
+      }
+    }
+    bytes = history.getBytes();
+  }
 }
 
 }  // namespace
