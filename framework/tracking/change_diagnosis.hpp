@@ -18,7 +18,7 @@ struct ChangeRecorder {
 
 /// Holds an alarm against terms that the model may lack (weighChangeOrTerm()), of the recordings that are at
 /// hand. The diagnosis says so in words where there are none of one side, or the model's terms are not known.
-/// Cost: that of eight inferences and of weighChangeOrTerm().
+/// Cost: that of twelve inferences and of weighChangeOrTerm().
 AlarmDiagnosis diagnoseAlarm(const TrackAlarm& alarm, const ChangeWindows& windows,
                              const ChangeRecorder& recorder);
 

@@ -51,7 +51,7 @@ Records leaveApart(Records records) {
   return records;
 }
 
-/// Of more than four, in order: the two that are nearest to the change, the farthest, and the one in the
+/// Of more than six, in order: the four that are nearest to the change, the farthest, and the one in the
 /// middle. The nearest ones are the last of those before it.
 Records spread(const Records& records, bool is_before) {
   const std::size_t count = records.size();
@@ -59,8 +59,10 @@ Records spread(const Records& records, bool is_before) {
     return records;
   }
   const std::size_t last = count - 1;
-  return is_before ? Records{records[0], records[last / 2], records[last - 1], records[last]}
-                   : Records{records[0], records[1], records[count / 2], records[last]};
+  Records chosen{records[0], records[is_before ? (last - 3) / 2 : (last + 4) / 2], records[last]};
+  const auto near = is_before ? records.end() - 4 : records.begin() + 1;
+  chosen.insert(is_before ? chosen.end() - 1 : chosen.begin() + 1, near, near + 3);
+  return chosen;
 }
 
 }  // namespace
