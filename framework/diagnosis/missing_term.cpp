@@ -5,12 +5,10 @@
 #include <stdexcept>
 
 #include "framework/base/text/source_location.hpp"
+#include "framework/diagnosis/best_term.hpp"
 #include "framework/diagnosis/blind_spots.hpp"
 #include "framework/diagnosis/problem/sensor_faults.hpp"
-#include "framework/diagnosis/remainder/residual_noise.hpp"
-#include "framework/diagnosis/term_ranking.hpp"
 #include "framework/estimation/levels.hpp"
-#include "framework/estimation/posterior/noise/residual_test.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/inference/select_estimate.hpp"
@@ -51,44 +49,6 @@ KnownFit findBest(const InferredMeasurement& inferred, Index u) {
   return {};
 }
 
-/// Searched from `start`, with the noise of the residual where its size is not known. It has no point where
-/// nothing can be simulated.
-CurrentFit fitFrom(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                   const VectorXd& start) {
-  const RecordingsProblem problem(experiment, recordings);
-  const RecordingFit fit = problem.fit(start);
-  const auto residuals = static_cast<double>(problem.listInfos().size());
-  CurrentFit current{experiment, fit.point, fit.chi_square,
-                     std::max(1.0, residuals - static_cast<double>(fit.point.size()))};
-  if (hasUnknownNoise(experiment.noise) && fit.point.size() > 0) {
-    const VectorXd residual = problem.linearize(fit.point).residual;
-    current.experiment.noise =
-        sizeNoise(experiment.noise, {experiment.noise, residual, current.degrees, problem.listInfos()},
-                  recordings.listOutputs(experiment));
-    current.chi_square =
-        RecordingsProblem(current.experiment, recordings).linearize(fit.point).residual.squaredNorm();
-  }
-  return current;
-}
-
-/// The one with the largest evidence by a fit, of the three best that stand out; null of none.
-const RankedTerm* fitBest(const CurrentFit& current, const RecordedFeatures& recording,
-                          const ScoredCandidates& scored, Index p, std::vector<RankedTerm>& ranked) {
-  ranked.resize(std::min(ranked.size(), kFittedOfBest), RankedTerm{{}});
-  const RankedTerm* best = nullptr;
-  for (RankedTerm& one : ranked) {
-    if (one.finding.p_value < kMismatchLevel) {
-      fitRanked(current, recording, scored, p, kMismatchLevel, one);
-      best = one.finding.fitted && (best == nullptr || hasMoreEvidence(one, *best)) ? &one : best;
-    }
-  }
-  return best != nullptr && best->finding.log_evidence > 0.0 ? best : nullptr;
-}
-
-bool isTied(const RankedTerm& one, const RankedTerm& best) {
-  return one.finding.fitted && best.finding.log_evidence - one.finding.log_evidence < kTiedEvidence;
-}
-
 /// Of the terms that are tied with the best, that with the largest evidence of those that have some and move
 /// a parameter by more than its standard deviation; null of none.
 const RankedTerm* findMoving(const RankedTerm& best, const std::vector<RankedTerm>& ranked) {
@@ -99,29 +59,6 @@ const RankedTerm* findMoving(const RankedTerm& best, const std::vector<RankedTer
     moving = moves && (moving == nullptr || hasMoreEvidence(one, *moving)) ? &one : moving;
   }
   return moving;
-}
-
-/// Whether what remains with a term is noise of the sizes that are supposed.
-bool explains(const CurrentFit& current, const RecordedFeatures& recordings, const FittedTerm& term) {
-  const RecordingsProblem problem(term.augmented.experiment, recordings);
-  const VectorXd residual = problem.linearize(term.point).residual;
-  const double degrees = std::max(1.0, current.degrees - static_cast<double>(term.augmented.added));
-  return testResidual(residual, degrees, problem.listInfos()).calcPValue() >= kMismatchLevel;
-}
-
-/// chi_square: without it.
-MissingTerm describe(const RankedTerm& best, const std::vector<RankedTerm>& ranked, double chi_square) {
-  const TermFinding& found = best.finding;
-  MissingTerm missing{
-      found.candidate.term, found.candidate.meaning, found.candidate.unit, found.estimate, found.stddev,
-      found.share,          found.log_evidence,      found.shifts};
-  missing.share_of_all = 1.0 - found.chi_square / chi_square;
-  for (const RankedTerm& one : ranked) {
-    if (&one != &best && isTied(one, best)) {
-      missing.rivals.push_back(one.finding.candidate.term);
-    }
-  }
-  return missing;
 }
 
 /// The blind spot that moves a parameter most, up to the size that matters. What would move by more than its
@@ -158,7 +95,7 @@ std::optional<MissingTerm> explainMisfit(const CurrentFit& current, const Record
   if (best == nullptr) {
     return {};
   }
-  MissingTerm missing = describe(*best, ranked, current.chi_square);
+  MissingTerm missing = describeMissing(*best, ranked, current.chi_square);
   missing.explains = explains(current, recording, best->fitted);
   return missing;
 }
@@ -204,7 +141,7 @@ ModelTest testTerms(const ExperimentSpec& experiment, const RecordedFeatures& re
   if (best == nullptr) {
     return test;
   }
-  MissingTerm missing = describe(*best, ranked, current.chi_square);
+  MissingTerm missing = describeMissing(*best, ranked, current.chi_square);
   const bool leaves_noise = explains(current, recordings, best->fitted);
   RecordedFeatures stated = recordings;
   stated.noise.clear();
@@ -288,6 +225,14 @@ bool isMisfit(const InferredMeasurement& inferred) {
 
 }  // namespace
 
+VectorXd findExplanation(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& unknown) {
+  const auto u = static_cast<Index>(unknown.size());
+  const KnownFit known = findBest(inferred, u);
+  return known.point.size() > 0             ? known.point
+         : inferred.explanation.size() >= u ? VectorXd(inferred.explanation.head(u))
+                                            : calcBoxCenter(unknown);
+}
+
 void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                InferredMeasurement& inferred) {
   const std::vector<ParameterSpec> unknown = collectUnknown(experiment.model);
@@ -299,9 +244,7 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   }
   try {
     if (misfits) {
-      const VectorXd start = known.point.size() > 0             ? known.point
-                             : inferred.explanation.size() >= u ? VectorXd(inferred.explanation.head(u))
-                                                                : calcBoxCenter(unknown);
+      const VectorXd start = findExplanation(inferred, unknown);
       inferred.model_test = ModelTest{explainMisfit(experiment, recording, start)};
     } else {
       inferred.model_test = testExplained(experiment, recording, inferred, known);

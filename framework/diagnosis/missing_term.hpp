@@ -8,6 +8,11 @@
 
 namespace twinmap {
 
+/// The point of the unknown parameters (u) that explains a measurement best, as far as was found; else the
+/// middle of their box.
+Eigen::VectorXd findExplanation(const InferredMeasurement& inferred,
+                                const std::vector<ParameterSpec>& unknown);
+
 /// What a measurement that was inferred says of terms that the model lacks, of those that diagnose() knows;
 /// those with states are asked where the residual is suspicious. Sets inferred.model_test. Of a misfit or a
 /// clock's fault that is the first term that diagnose() would name. Any other term has evidence

@@ -49,7 +49,8 @@ std::optional<double> readTrackTime(const Table& table, const TrackingSpec* trac
   return time;
 }
 
-Table takeWindow(const Table& table, const MeasurementReader& reader, std::optional<double> start) {
+Table takeWindow(const Table& table, const MeasurementReader& reader, std::optional<double> start,
+                 double beside) {
   const VectorXd& times = reader.getLayout().times;
   const Index rows = table.columns.empty() ? 0 : table.columns.front().values.size();
   const bool is_even = std::all_of(table.columns.begin(), table.columns.end(),
@@ -63,7 +64,7 @@ Table takeWindow(const Table& table, const MeasurementReader& reader, std::optio
       readUnorderedTimes(table, makeTimeBase(reader.getExperiment().measurement, 0.0), rows);
   std::vector<Index> within;
   for (Index i = 0; i < measured.size(); ++i) {
-    if (measured[i] >= first - slack && measured[i] <= last + slack) {
+    if (measured[i] >= first - beside - slack && measured[i] <= last + beside + slack) {
       within.push_back(i);
     }
   }

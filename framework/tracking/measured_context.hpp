@@ -13,9 +13,11 @@ namespace twinmap {
 /// Throws MeasurementError for a column that is missing, or does not begin with a time.
 std::optional<double> readTrackTime(const Table& table, const TrackingSpec* tracking);
 
-/// The rows of a table within the window that is inferred from. The whole table where it has columns of
+/// The rows of a table within the window that is inferred from, and `beside` (s) before and behind it. The
+/// whole table where it has columns of
 /// several lengths, or samples that were reduced. Throws MeasurementError where it has no times.
-Table takeWindow(const Table& table, const MeasurementReader& reader, std::optional<double> start);
+Table takeWindow(const Table& table, const MeasurementReader& reader, std::optional<double> start,
+                 double beside = 0.0);
 
 /// The mean of each condition's column, of the cells that are there; NaN where there are none.
 Eigen::VectorXd readConditions(const Table& table, const std::vector<std::string>& conditions);

@@ -141,11 +141,40 @@ Json makeTrackState(const TrackPoint& point, const TrackView& view) {
 
 namespace {
 
-Json makeAlarm(const TrackAlarm& alarm, const TrackView& view) {
-  if (alarm.is_of_several) {
-    return {{"announced", alarm.announced}, {"parameter", nullptr}, {"of", "several parameters at once"}};
+/// What the change may be in its place, and the measurement that would tell.
+Json makeVerdict(const TrackAlarm& alarm, const TrackView& view) {
+  const std::deque<AlarmDiagnosis> none, &all = view.diagnoses != nullptr ? *view.diagnoses : none;
+  const auto diagnosis =
+      std::find_if(all.begin(), all.end(), [&](const AlarmDiagnosis& one) { return one.isOf(alarm); });
+  const Json held = diagnosis == all.end() ? Json::object() : parseJson(diagnosis->answer);
+  const std::string term = held.value("term", "");
+  std::vector<std::string> rivals = alarm.rivals;
+  if (!term.empty()) {
+    rivals.push_back(term);
   }
+  Json verdict{{"rivals", rivals}};
+  if (!rivals.empty()) {
+    verdict["test"] = fmt::format(
+        "measure again with {} as it was before the change: what is then as it was follows it, and the model "
+        "lacks {}",
+        alarm.rivals.empty() ? "the motion" : fmt::format("{}", fmt::join(alarm.rivals, ", ")),
+        term.empty() ? "a term" : term);
+  }
+  if (!held.empty()) {
+    verdict["diagnosis"] = held;
+  }
+  return verdict;
+}
+
+Json makeAlarm(const TrackAlarm& alarm, const TrackView& view) {
   const tracking::Change& change = alarm.change;
+  if (alarm.is_of_several) {
+    return {{"announced", alarm.announced},
+            {"parameter", nullptr},
+            {"of", "several parameters at once"},
+            {"time", change.time},
+            {"drift_or_model", makeVerdict(alarm, view)}};
+  }
   const auto& parameter = view.parameters[static_cast<std::size_t>(change.parameter)];
   const Bounds& bounds = parameter.bounds;
   const double unit = 1.0 / view.space.calcSlope(change.parameter, 0.5 * (bounds.lower + bounds.upper));
@@ -160,14 +189,7 @@ Json makeAlarm(const TrackAlarm& alarm, const TrackView& view) {
   for (std::size_t j = 0; j < view.parameters.size(); ++j) {
     json["probabilities"][view.parameters[j].name.text] = change.probabilities[static_cast<Index>(j)];
   }
-  Json verdict{{"rivals", alarm.rivals}};
-  if (!alarm.rivals.empty()) {
-    verdict["test"] = fmt::format(
-        "measure again with {} as it was before the change: what is then as it was "
-        "follows it, and the model lacks a term",
-        fmt::join(alarm.rivals, ", "));
-  }
-  json["drift_or_model"] = verdict;
+  json["drift_or_model"] = makeVerdict(alarm, view);
   return json;
 }
 

@@ -11,7 +11,8 @@ namespace twinmap {
 struct TrackView {
   const std::vector<ParameterSpec>& parameters;
   const TrackSpace& space;
-  const TrackingSpec* tracking;  ///< null: none
+  const TrackingSpec* tracking;                           ///< null: none
+  const std::deque<AlarmDiagnosis>* diagnoses = nullptr;  ///< null: none
 };
 
 /// The belief at a point: "measurements", "time", "status" (ok or uncalibrated), "parameters" by name. Each
@@ -19,7 +20,8 @@ struct TrackView {
 /// "covariance", "follows", "forecast" of limits.
 Json makeTrackState(const TrackPoint& point, const TrackView& view);
 
-/// The alarms behind the first `skipped` of all: parameter, time, size, sd, probability, rivals.
+/// The alarms behind the first `skipped` of all: parameter, time, size, sd, probability. "drift_or_model" has
+/// rivals, the test that would tell, and the diagnosis of the recordings before and after it.
 Json makeTrackAlarms(const TrackPoint& point, long long skipped, const TrackView& view);
 
 }  // namespace twinmap

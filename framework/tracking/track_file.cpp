@@ -109,6 +109,30 @@ void readPoint(const std::string& text, TrackPoint& point) {
   }
 }
 
+std::string writeDiagnosis(const AlarmDiagnosis& one) {
+  return formatJson({{"announced", one.announced},
+                     {"of_several", one.is_of_several},
+                     {"parameter", one.parameter},
+                     {"time", one.time},
+                     {"answer", one.answer}});
+}
+
+AlarmDiagnosis readDiagnosis(const std::string& text) {
+  const Json json = parseJson(text);
+  return {json.at("announced"), json.at("of_several"), json.at("parameter").get<Eigen::Index>(),
+          json.at("time"), json.at("answer")};
+}
+
+/// None of a file from before there were any.
+std::deque<AlarmDiagnosis> readDiagnoses(const Hdf5Reader& file) {
+  std::deque<AlarmDiagnosis> diagnoses;
+  for (const std::string& text :
+       file.contains("diagnoses") ? file.readTexts("diagnoses") : std::vector<std::string>{}) {
+    diagnoses.push_back(readDiagnosis(text));
+  }
+  return diagnoses;
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
   throw std::runtime_error(path.string() + ": " + why);
 }
@@ -145,6 +169,13 @@ void writeTrackFile(const std::filesystem::path& path, const TrackIdentity& iden
       texts.push_back(writeRecord(record));
     }
     file.write("texts", texts);
+    std::vector<std::string> diagnoses;
+    for (const AlarmDiagnosis& one : twin.getDiagnoses()) {
+      diagnoses.push_back(writeDiagnosis(one));
+    }
+    if (!diagnoses.empty()) {
+      file.write("diagnoses", diagnoses);
+    }
     file.write("history_bytes", std::vector<std::int64_t>{static_cast<std::int64_t>(history_bytes)});
     file.close();
   });
@@ -169,7 +200,7 @@ std::optional<LoadedTrack> readTrackFile(const std::filesystem::path& path, cons
       window.push_back(readRecord(texts[i], model.countParameters(), model.conditions));
     }
     const auto bytes = static_cast<std::uint64_t>(file.readIntegers("history_bytes").at(0));
-    return LoadedTrack{TrackedTwin(std::move(base), std::move(window), lag), bytes};
+    return LoadedTrack{TrackedTwin(std::move(base), std::move(window), lag, readDiagnoses(file)), bytes};
   } catch (const Json::exception&) {
     refuse(path, "is not a state of track");
   } catch (const std::out_of_range&) {

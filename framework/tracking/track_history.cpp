@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -31,6 +32,51 @@ TrackHistory::TrackHistory(std::filesystem::path file, std::uint64_t bytes)
   }
 }
 
+namespace {
+
+/// The first 16 of a digest's hexadecimal digits.
+std::uint64_t readDigest(const std::string& digest) {
+  return std::strtoull(digest.substr(0, 16).c_str(), nullptr, 16);
+}
+
+/// Of a line, without reading all of it: within a text of JSON no quote stands bare.
+std::uint64_t findDigest(const std::string& line) {
+  const std::string key = "\"digest\":";
+  const std::size_t at = line.find('"', line.find(key) + key.size());
+  return readDigest(line.substr(at + 1, 16));
+}
+
+/// Of all lines, ascending; of each the beginning is looked at alone, which is longer than any path.
+std::vector<std::uint64_t> readDigests(const std::filesystem::path& path) {
+  constexpr int kBeginning = 16384;
+  std::vector<std::uint64_t> digests;
+  std::string part(kBeginning, ' ');
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  bool begins = true;
+  while (file && std::fgets(part.data(), kBeginning, file.get()) != nullptr) {
+    const std::string line(part.c_str());
+    if (begins) {
+      digests.push_back(findDigest(line));
+    }
+    begins = line.back() == '\n';
+  }
+  std::sort(digests.begin(), digests.end());
+  return digests;
+}
+
+void insert(std::uint64_t digest, std::vector<std::uint64_t>& digests) {
+  digests.insert(std::upper_bound(digests.begin(), digests.end(), digest), digest);
+}
+
+}  // namespace
+
+bool TrackHistory::contains(const std::string& digest) {
+  if (!digests_) {
+    digests_ = readDigests(file_);
+  }
+  return std::binary_search(digests_->begin(), digests_->end(), readDigest(digest));
+}
+
 void TrackHistory::add(const TrackRecord& record) {
   const std::string line = writeRecord(record) + "\n";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(file_.c_str(), "ab"), &std::fclose);
@@ -41,6 +87,9 @@ void TrackHistory::add(const TrackRecord& record) {
     throw std::runtime_error(file_.string() + ": cannot be written");
   }
   bytes_ += line.size();
+  if (digests_) {
+    insert(readDigest(record.digest), *digests_);
+  }
 }
 
 std::vector<TrackRecord> TrackHistory::read(Index parameters, Index conditions) const {

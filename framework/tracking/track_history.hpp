@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ class TrackHistory {
   /// Appends a line. Throws std::runtime_error naming the file where that fails; it is as before then.
   void add(const TrackRecord& record);
 
+  /// Whether a measurement of such a table was counted, at any time. The first call reads the file; from then
+  /// on 8 bytes of memory a measurement. A table is taken for another with a probability of 2^-64 each.
+  bool contains(const std::string& digest);
+
   std::uint64_t getBytes() const { return bytes_; }
   const std::filesystem::path& getFile() const { return file_; }
 
@@ -31,6 +36,7 @@ class TrackHistory {
  private:
   std::filesystem::path file_;
   std::uint64_t bytes_;
+  std::optional<std::vector<std::uint64_t>> digests_;  // the first half of each, ascending
 };
 
 /// What is known of each parameter at each measurement, in coordinates: by those until then, and by all.

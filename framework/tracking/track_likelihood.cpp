@@ -110,7 +110,21 @@ Parts listParts(const Estimate& estimate, const TrackSpace& space) {
              : parts;
 }
 
+/// Of a status, whether a measurement with it does not update: the model does not hold for it, or nothing
+/// reliable is known of it.
+bool isBarred(const std::string& status) {
+  return status == "model_mismatch" || status == "model_incomplete" || status == "missing_term" ||
+         status == "unreliable" || status == "not_simulated";
+}
+
 }  // namespace
+
+bool informs(const Estimate& estimate, const std::vector<std::string>& use) {
+  return estimate.isGiven() && estimate.mean.allFinite() && estimate.stddev.allFinite() &&
+         std::none_of(estimate.statuses.begin(), estimate.statuses.end(), [&](const std::string& status) {
+           return isBarred(status) && std::find(use.begin(), use.end(), status) == use.end();
+         });
+}
 
 tracking::Measurement makeTrackMeasurement(const Estimate& estimate, const TrackSpace& space,
                                            const TrackPrior& prior) {

@@ -193,10 +193,15 @@ std::string makeAlarmText(const Json& alarms) {
                                         {"unit", "unit"},
                                         {"probability", "probability"}});
   for (const Json& alarm : alarms) {
-    if (alarm.contains("drift_or_model") && alarm["drift_or_model"].contains("test")) {
-      html +=
-          fmt::format("<p>{} at {}: as likely follows something else; {}.</p>", showCell(alarm["parameter"]),
-                      showCell(alarm["time"]), showCell(alarm["drift_or_model"]["test"]));
+    const Json& verdict = alarm.at("drift_or_model");
+    const std::string of =
+        fmt::format("{} at {}: ", showCell(alarm.at(alarm.contains("of") ? "of" : "parameter")),
+                    showCell(alarm.at("time")));
+    if (verdict.contains("test")) {
+      html += fmt::format("<p>{}as likely follows something else; {}.</p>", of, showCell(verdict["test"]));
+    }
+    if (verdict.contains("diagnosis")) {
+      html += fmt::format("<p>{}{}.</p>", of, showCell(verdict["diagnosis"]["says"]));
     }
   }
   return html;

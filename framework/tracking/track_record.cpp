@@ -71,17 +71,23 @@ std::string writeRecord(const TrackRecord& record) {
                      {"variances", writeNumbers(mode.variances)},
                      {"log_weight", mode.log_weight}});
   }
-  return formatJson({{"time", measurement.time},
-                     {"source", record.source},
-                     {"digest", record.digest},
-                     {"status", record.status},
-                     {"estimate", writeNumbers(record.estimate)},
-                     {"rows", writeNumbers(measurement.rows)},
-                     {"values", writeNumbers(measurement.values)},
-                     {"variances", writeNumbers(measurement.variances)},
-                     {"conditions", writeNumbers(measurement.conditions)},
-                     {"covariates", covariates},
-                     {"modes", modes}});
+  Json json{{"time", measurement.time},
+            {"source", record.source},
+            {"digest", record.digest},
+            {"status", record.status},
+            {"estimate", writeNumbers(record.estimate)},
+            {"rows", writeNumbers(measurement.rows)},
+            {"values", writeNumbers(measurement.values)},
+            {"variances", writeNumbers(measurement.variances)},
+            {"conditions", writeNumbers(measurement.conditions)},
+            {"covariates", covariates},
+            {"modes", modes},
+            {"trial", record.trial},
+            {"is_file", record.is_file}};
+  if (record.start) {
+    json["start"] = *record.start;
+  }
+  return formatJson(json);
 }
 
 TrackRecord readRecord(const std::string& line, Index parameters, Index conditions) {
@@ -91,6 +97,11 @@ TrackRecord readRecord(const std::string& line, Index parameters, Index conditio
     TrackRecord record{json.at("source"), json.at("digest"), json.at("status")};
     for (const Json& covariate : json.at("covariates")) {
       record.covariates.push_back({covariate.at(0), covariate.at(1)});
+    }
+    record.trial = json.value("trial", "");
+    record.is_file = json.value("is_file", false);
+    if (json.contains("start")) {
+      record.start = json.at("start").get<double>();
     }
     tracking::Measurement& measurement = record.measurement;
     record.estimate = readNumbers(json.at("estimate"), kMissing);

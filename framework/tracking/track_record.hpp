@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,10 @@ struct Covariate {
 struct TrackRecord {
   std::string source, digest, status;
   std::vector<Covariate> covariates{};
-  Eigen::VectorXd estimate{};  ///< p, coordinates; empty of what does not update
+  std::string trial{};            ///< of an experiment with trials
+  std::optional<double> start{};  ///< time in its table that is 0 of the model, as it was given
+  bool is_file = false;           ///< whether `source` is the path of its table
+  Eigen::VectorXd estimate{};     ///< p, coordinates; empty of what does not update
   tracking::Measurement measurement{};
 
   /// Order in time; of equal times that of digests, whatever came first.

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "framework/tracking/tracked_twin.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 namespace {
@@ -11,43 +12,59 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Chi-square that sums of the columns (n x c) leave of values of weights w (Gram and Schmidt). Infinite
-/// where the second column does not differ from the first.
-double calcLeft(MatrixXd columns, VectorXd values, const VectorXd& weights) {
-  constexpr double kVaries = 1e-12;
-  for (Index c = 0; c < columns.cols(); ++c) {
-    const double before = weights.dot(columns.col(c).cwiseAbs2());
-    for (Index done = 0; done < c; ++done) {
-      const VectorXd along = columns.col(done);
-      columns.col(c) -= (weights.array() * along.array() * columns.col(c).array()).sum() * along;
+/// What is known of one parameter's course: `n` values of weights, and which of the samples they are of.
+struct ParameterCourse {
+  std::vector<Index> samples;
+  VectorXd values, weights;
+};
+
+ParameterCourse collectCourse(const std::vector<const CourseSample*>& samples, Index parameter) {
+  ParameterCourse course;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (std::isfinite(samples[i]->variances[parameter])) {
+      course.samples.push_back(static_cast<Index>(i));
     }
-    const double square = weights.dot(columns.col(c).cwiseAbs2());
-    if (!(square > kVaries * before)) {
-      if (c == 1) {
-        return std::numeric_limits<double>::infinity();
-      }
-      columns.col(c).setZero();
-      continue;
-    }
-    columns.col(c) /= std::sqrt(square);
-    values -= (weights.array() * columns.col(c).array() * values.array()).sum() * columns.col(c);
   }
-  return weights.dot(values.cwiseAbs2());
+  const auto n = static_cast<Index>(course.samples.size());
+  course.values = VectorXd::NullaryExpr(n, [&](Index i) {
+    return samples[static_cast<std::size_t>(course.samples[static_cast<std::size_t>(i)])]
+        ->estimate[parameter];
+  });
+  course.weights = VectorXd::NullaryExpr(n, [&](Index i) {
+    return 1.0 / samples[static_cast<std::size_t>(course.samples[static_cast<std::size_t>(i)])]
+                     ->variances[parameter];
+  });
+  return course;
 }
 
-/// Of what a step or a line is.
-double calcLeftOf(const VectorXd& x, const VectorXd& values, const VectorXd& weights) {
-  MatrixXd columns(x.size(), 2);
-  columns << VectorXd::Ones(x.size()), x;
-  return calcLeft(std::move(columns), values, weights);
+/// Chi-square that a polynomial of x (one value a sample) leaves of a course. A line is what a step is; a
+/// parabola has as many numbers as a step with its time. Infinite where x does not vary.
+double calcLeft(const VectorXd& x, int degree, const ParameterCourse& course) {
+  const VectorXd own = x(course.samples);
+  const double size = own.cwiseAbs().maxCoeff();
+  const VectorXd off = (own.array() - own.mean()) / (size > 0.0 ? size : 1.0);
+  MatrixXd columns = MatrixXd::Ones(own.size(), degree + 1);
+  for (int power = 1; power <= degree; ++power) {
+    columns.col(power) = columns.col(power - 1).cwiseProduct(off);
+  }
+  const VectorXd root = course.weights.cwiseSqrt();
+  const MatrixXd weighted = root.asDiagonal() * columns;
+  const VectorXd values = root.cwiseProduct(course.values);
+  const linalg::LinearFit fit = linalg::fitLinear(weighted, values);
+  return fit.rank < 2 ? std::numeric_limits<double>::infinity()
+                      : (values - weighted * fit.coefficients).squaredNorm();
 }
 
-/// Of a parabola, which has as many numbers as a step with its time.
-double calcLeftOfCurve(const VectorXd& x, const VectorXd& values, const VectorXd& weights) {
-  MatrixXd columns(x.size(), 3);
-  const VectorXd off = x.array() - x.mean();
-  columns << VectorXd::Ones(x.size()), off, off.cwiseAbs2();
-  return calcLeft(std::move(columns), values, weights);
+/// By how much chi-square a parabola of x is worse than a step, of all courses together. Of a parameter that
+/// scatters by more than its measurements say, differences count for less.
+double calcWorse(const VectorXd& x, const VectorXd& step, const std::vector<ParameterCourse>& courses) {
+  double worse = 0.0;
+  for (const ParameterCourse& course : courses) {
+    const double left = calcLeft(step, 1, course);
+    const double degrees = std::max(1.0, static_cast<double>(course.values.size() - 3));
+    worse += (calcLeft(x, 2, course) - left) / std::max(1.0, left / degrees);
+  }
+  return worse;
 }
 
 /// The values of a covariate; empty where a measurement lacks it.
@@ -67,33 +84,29 @@ VectorXd collect(const std::vector<const CourseSample*>& samples, const std::str
 
 }  // namespace
 
-std::vector<std::string> findRivals(const std::deque<CourseSample>& course, const tracking::Change& change) {
+std::vector<std::string> findRivals(const std::deque<CourseSample>& course,
+                                    const std::vector<Eigen::Index>& parameters, double change) {
   const double as_likely = 2.0 * std::log(20.0);  // of chi-square
-  const Index j = change.parameter;
   std::vector<const CourseSample*> samples;
   for (const CourseSample& sample : course) {
-    if (std::isfinite(sample.variances[j])) {
-      samples.push_back(&sample);
+    samples.push_back(&sample);
+  }
+  std::vector<ParameterCourse> courses;
+  for (const Index j : parameters) {
+    if (ParameterCourse one = collectCourse(samples, j); one.values.size() > 0) {
+      courses.push_back(std::move(one));
     }
   }
   std::vector<std::string> rivals;
-  if (samples.empty()) {
+  if (courses.empty()) {
     return rivals;
   }
-  const auto n = static_cast<Index>(samples.size());
-  VectorXd values(n), weights(n), step(n);
-  for (Index i = 0; i < n; ++i) {
-    const CourseSample& sample = *samples[static_cast<std::size_t>(i)];
-    values[i] = sample.estimate[j];
-    weights[i] = 1.0 / sample.variances[j];
-    step[i] = sample.time >= change.time ? 1.0 : 0.0;
-  }
-  const double left = calcLeftOf(step, values, weights);
-  // of a parameter that scatters by more than its measurements say, differences count for less
-  const double scatter = std::max(1.0, left / std::max(1.0, static_cast<double>(n - 3)));
+  const VectorXd step = VectorXd::NullaryExpr(static_cast<Index>(samples.size()), [&](Index i) {
+    return samples[static_cast<std::size_t>(i)]->time >= change ? 1.0 : 0.0;
+  });
   for (const Covariate& covariate : samples.back()->covariates) {
     const VectorXd x = collect(samples, covariate.name);
-    if (x.size() > 0 && calcLeftOfCurve(x, values, weights) < left + as_likely * scatter) {
+    if (x.size() > 0 && calcWorse(x, step, courses) < as_likely) {
       rivals.push_back(covariate.name);
     }
   }

@@ -17,6 +17,7 @@
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/text/inference_text.hpp"
+#include "framework/tracking/change_diagnosis.hpp"
 #include "framework/tracking/measured_context.hpp"
 #include "framework/tracking/track_answer.hpp"
 #include "framework/tracking/track_file.hpp"
@@ -49,13 +50,6 @@ std::string digestText(const std::string& text) {
 
 TrackIdentity identify(const TwinSource& source, const std::optional<TrackingSpec>& tracking) {
   return {source.getName(), digestText(source.describe()), tracking ? writeTracking(*tracking) : ""};
-}
-
-/// Of a status, whether a measurement with it does not update: the model does not hold for it, or nothing
-/// reliable is known of it.
-bool isBarred(const std::string& status) {
-  return status == "model_mismatch" || status == "model_incomplete" || status == "missing_term" ||
-         status == "unreliable" || status == "not_simulated";
 }
 
 TrackOptions check(TrackOptions options, const ModelSpec& model) {
@@ -91,6 +85,7 @@ struct TrackSession::Parts {
   TrackPrior prior;
   std::optional<TrackedTwin> twin;
   std::optional<TrackHistory> history;
+  RecordingShelf shelf;
   bool changed = false;  ///< since commit()
 
   Parts(const TwinSource& from, fs::path file, TrackOptions given)
@@ -142,7 +137,7 @@ struct TrackSession::Parts {
   }
   TrialInference& findTrial(const std::string& trial) { return trials[source.find(trial)]; }
   const TrackingSpec* findSpec() const { return options.tracking ? &*options.tracking : nullptr; }
-  TrackView view() const { return {getModel().parameters, space, findSpec()}; }
+  TrackView view() const { return {getModel().parameters, space, findSpec(), &twin->getDiagnoses()}; }
   fs::path getHistoryFile() const { return fs::path(state).replace_extension(".jsonl"); }
 
   TrackCourse calcCourse() const {
@@ -150,10 +145,12 @@ struct TrackSession::Parts {
   }
 
   TrackRecord makeRecord(const MeasurementReader& reader, const Table& table, const std::string& digest,
-                         const MeasurementContext& context) const {
+                         const MeasurementContext& context) {
     TrackRecord record{table.source, digest, ""};
+    record.trial = context.trial;
+    record.start = context.start;
     const std::optional<double> stated = context.at ? context.at : readTrackTime(table, findSpec());
-    record.measurement.time = stated ? *stated : number(digest);
+    record.measurement.time = stated ? *stated : number(record);
     const Table window = takeWindow(table, reader, context.start);
     record.measurement.conditions = readConditions(window, conditions);
     record.covariates = listCovariates(window, conditions);
@@ -161,14 +158,22 @@ struct TrackSession::Parts {
     return record;
   }
 
-  /// The time of what states none: its number, of what is there already that one's.
-  double number(const std::string& digest) const {
+  /// The time of what states none: its number, of what is there already that one's. Throws MeasurementError
+  /// where that is older than the window, of which no more is known.
+  double number(const TrackRecord& of) {
     for (const TrackRecord& record : twin->getWindow()) {
-      if (record.digest == digest) {
+      if (record.digest == of.digest) {
         return record.measurement.time;
       }
     }
-    return static_cast<double>(twin->getNow().tracker.getState().count + 1);
+    const long long count = twin->getNow().tracker.getState().count;
+    if (count > static_cast<long long>(twin->getWindow().size()) && history->contains(of.digest)) {
+      throw MeasurementError(fmt::format(
+          "{}: was counted before the last {} measurements, and states no time; it is not counted "
+          "again. If it is another measurement, give its time (--at)",
+          of.source, twin->getWindow().size()));
+    }
+    return static_cast<double>(count + 1);
   }
 
   void requirePlace(const TrackRecord& record) const {
@@ -184,22 +189,13 @@ struct TrackSession::Parts {
     }
   }
 
-  /// Whether it updates, by its statuses.
-  bool informs(const Estimate& estimate) const {
-    return estimate.isGiven() && estimate.mean.allFinite() && estimate.stddev.allFinite() &&
-           std::none_of(estimate.statuses.begin(), estimate.statuses.end(), [&](const std::string& status) {
-             return isBarred(status) &&
-                    std::find(options.use.begin(), options.use.end(), status) == options.use.end();
-           });
-  }
-
   void take(const Estimate& estimate, TrackRecord& record) const {
     const Eigen::Index p = space.count();
     tracking::Measurement& measurement = record.measurement;
     record.status = joinStatuses(estimate.statuses, ", ");
     measurement.rows.resize(0, p);
     measurement.variances = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::infinity());
-    if (!informs(estimate)) {
+    if (!informs(estimate, options.use)) {
       return;
     }
     tracking::Measurement said = makeTrackMeasurement(estimate, space, prior);
@@ -220,9 +216,23 @@ struct TrackSession::Parts {
     }
   }
 
+  /// An alarm that the last measurement raised, held against terms that the model may lack.
+  void diagnose(TrialInference& trial) {
+    const TrackAlarm* alarm = twin->findUndiagnosed();
+    if (alarm != nullptr) {
+      const auto find = [&](const TrackRecord& record) {
+        return shelf.find(record, trial.columns, trial.inference->getMissingCells());
+      };
+      const ChangeWindows windows =
+          chooseChangeWindows(twin->getWindow(), twin->getNow(), alarm->change.time);
+      twin->note(diagnoseAlarm(*alarm, windows, {*trial.inference, trial.known, find}));
+    }
+  }
+
   Json update(TrialInference& trial, const Table& table, const std::string& digest,
-              const MeasurementContext& context) {
+              const MeasurementContext& context, bool is_file) {
     TrackRecord record = makeRecord(trial.reader, table, digest, context);
+    record.is_file = is_file;
     if (const TrackRecord* counted = twin->findSame(record)) {
       return answerAgain(*counted, table.source);
     }
@@ -235,9 +245,11 @@ struct TrackSession::Parts {
     take(estimate, record);
     const Eigen::Index rows = record.measurement.values.size();
     history->add(record);  // where that fails, nothing has changed
+    shelf.add(trial.reader, table, record);
     const long long alarms = twin->getNow().alarm_count;
     const tracking::Step step = twin->add(std::move(record));
     changed = true;
+    diagnose(trial);
     Json beside{{"at", time}, {"counted", true}, {"late", is_late}, {"updates", rows > 0}};
     if (!is_late) {
       beside["fits"] = step.is_used || rows == 0;
@@ -275,13 +287,13 @@ Json TrackSession::update(const std::string& text, const std::string& name,
   std::istringstream stream(text);
   Parts::TrialInference& trial = parts_->findTrial(context.trial);
   return parts_->update(trial, readCsv(stream, name, trial.columns, trial.inference->getMissingCells()),
-                        digestText(text), context);
+                        digestText(text), context, false);
 }
 
 Json TrackSession::updateFile(const fs::path& file, const MeasurementContext& context) {
   Parts::TrialInference& trial = parts_->findTrial(context.trial);
   return parts_->update(trial, readTable(file, trial.columns, trial.inference->getMissingCells()),
-                        toHex(calcFileDigest(file)), context);
+                        toHex(calcFileDigest(file)), context, true);
 }
 
 std::optional<double> TrackSession::readTime(const fs::path& file, const std::string& trial) const {

@@ -1,5 +1,6 @@
 #include "kernels/tracking/belief.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace twinmap::tracking {
@@ -16,6 +17,17 @@ Belief makePrior(const Model& model) {
   return belief;
 }
 
+namespace {
+
+/// How far a walk may take a level's variance: to that of its prior, or of a parameter that may be anywhere
+/// within its bounds.
+double calcLargestVariance(const Model& model, Index parameter) {
+  constexpr double kWithinBounds = 1.0 / 3.0;
+  return std::max(model.covariance(parameter, parameter), kWithinBounds);
+}
+
+}  // namespace
+
 void predict(const Model& model, double dt, const VectorXd& growth, Belief& belief) {
   const Index p = model.countParameters();
   MatrixXd& covariance = belief.covariance;
@@ -26,8 +38,11 @@ void predict(const Model& model, double dt, const VectorXd& growth, Belief& beli
       covariance.row(j) += dt * covariance.row(slope);
       covariance.col(j) += dt * covariance.col(slope);
       ++slope;
+      covariance(j, j) += growth[j];
+      continue;
     }
-    covariance(j, j) += growth[j];
+    const double room = calcLargestVariance(model, j) - covariance(j, j);
+    covariance(j, j) += std::min(growth[j], std::max(room, 0.0));
   }
 }
 

@@ -13,7 +13,9 @@ struct Belief {
 /// The model's prior; slopes and coefficients are known to be 0 until their units are (setUnits()).
 Belief makePrior(const Model& model);
 
-/// What a step of time does: levels move by their slopes, variances grow by `growth` (p), rate times dt.
+/// What a step of time does: levels move by their slopes, variances grow by `growth` (p), rate times dt. A
+/// walk without a slope stays within its bounds, -1 to 1. It makes no level less known than anywhere between
+/// them, or than before the first measurement.
 void predict(const Model& model, double dt, const Eigen::VectorXd& growth, Belief& belief);
 
 /// One value: h' state + noise of unit variance, and what the belief says of it.

@@ -26,7 +26,7 @@ struct Follow {
   double stddev = 0.0;
 };
 
-/// p parameters, in units in which their prior is of the size of 1, and how they move. The state (n) is
+/// p parameters, in units in which their bounds are -1 and 1, and how they move. The state (n) is
 /// their levels, then the slopes of those that have one, then a coefficient for each Follow.
 struct Model {
   std::vector<Drift> drifts;  ///< p

@@ -16,7 +16,6 @@ namespace {
 constexpr double kBad = 0.05;        // share of measurements that say nothing
 constexpr double kSurprises = 10.0;  // of 20: more than any noise or a change makes
 constexpr double kMemory = 20.0;     // measurements
-constexpr int kRunOfBad = 4;         // in a row: six in a million where one in twenty is bad
 constexpr double kNever = 1e300;
 // Standard deviations above the mean at which unknown rates move what changes are seen against: a rate that
 // is taken for too small is called a change. Of the belief itself rates are integrated out.

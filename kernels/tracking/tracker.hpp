@@ -7,6 +7,10 @@
 
 namespace twinmap::tracking {
 
+/// So many measurements in a row that say something and are not used: all begins anew. Six in a million where
+/// one in twenty is bad.
+constexpr int kRunOfBad = 4;
+
 /// All that a tracker remembers: constant in size.
 struct TrackerState {
   long long count = 0;                ///< measurements so far

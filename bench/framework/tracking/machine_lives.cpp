@@ -254,6 +254,7 @@ class Study {
     if (alarm.contains("drift_or_model")) {
       one["time"] = alarm["time"];
       one["rivals"] = alarm["drift_or_model"]["rivals"];
+      one["diagnosis"] = alarm["drift_or_model"].value("diagnosis", Json());
     }
     return one;
   }

@@ -286,6 +286,29 @@ static int informs(const twinmap_result *result)
 
 /* Kalman's filter. */
 
+static int has_slope(int j)
+{
+#if TWINMAP_TRACK_SLOPES
+  int s;
+  for (s = 0; s < SLOPES; ++s) {
+    if (slope_parameter[s] == j) {
+      return 1;
+    }
+  }
+#else
+  (void)j;
+#endif
+  return 0;
+}
+
+/* A walk makes no level less known than anywhere within its bounds, or than before the first measurement. */
+static double limit_growth(int j, double growth, const belief_t *belief)
+{
+  const double prior = prior_covariance[j * P + j], bounds = 1.0 / 3.0;
+  const double room = (prior > bounds ? prior : bounds) - belief->covariance[j * N + j];
+  return growth < room ? growth : room > 0.0 ? room : 0.0;
+}
+
 static void predict(double dt, const double *growth, belief_t *belief)
 {
   int j;
@@ -306,7 +329,7 @@ static void predict(double dt, const double *growth, belief_t *belief)
   (void)dt;
 #endif
   for (j = 0; j < P; ++j) {
-    belief->covariance[j * N + j] += growth[j];
+    belief->covariance[j * N + j] += has_slope(j) ? growth[j] : limit_growth(j, growth[j], belief);
   }
 }
 

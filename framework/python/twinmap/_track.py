@@ -128,7 +128,7 @@ class Track:
     @property
     def alarms(self) -> DataFrame:
         """The last changes that were announced, a row each: announced, parameter, time, size, stddev, unit, probability, rivals.
-        The parameter is None of several at once. Rivals are what else explains its course as well."""
+        The parameter is None of several at once. Rivals explain it as well: a missing term, too."""
         rows = [
             {
                 "announced": one["announced"],

@@ -8,6 +8,7 @@ import unittest
 from support import EXPERIMENTS, TWINMAP, WEIGHED_MACHINE, WEIGHED_TRIALS, FolderTestCase, call, read_csv
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
+RING = EXPERIMENTS.parent / "bench/framework/tracking/ring.yaml"
 TRACKING = """
 tracking:
   drift: {k: {random_walk: {stddev: 0.02, over: 1}}}
@@ -75,6 +76,13 @@ class Track(FolderTestCase):
         self.track("f.h5", self.files[0], self.files[1])
         again = json.loads(self.track("f.h5", self.files[0]).stdout)["track"]
         self.assertEqual((again["counted"], again["at"], again["measurements"]), (False, 1, 2))
+
+    def test_the_same_older_than_the_lag_without_a_time_is_refused(self):
+        self.track("j.h5", *self.files[:3], "--lag", "2")
+        again = self.track("j.h5", self.files[0], "--lag", "2")
+        self.assertEqual(again.returncode, 1)
+        self.assertIn("was counted before the last 2 measurements, and states no time", again.stderr)
+        self.assertEqual(json.loads(self.track("j.h5", self.files[1], "--lag", "2").stdout)["track"]["measurements"], 3)
 
     def test_what_was_counted_is_answered_without_inferring_it_again(self):
         first = json.loads(self.track("h.h5", self.files[0]).stdout)
@@ -183,6 +191,59 @@ class TrackWindows(FolderTestCase):
         self.assertLess(amplitudes[3], amplitudes[0] - 0.3)
         result = call("track", file, "--folder", self.folder, "--windows", "1", "--state", state)
         self.assertIn("--windows is of files", result.stderr)
+
+
+class TrackedModel(FolderTestCase):
+    """A mass whose spring hardens, which the model lacks: released far at first, then near."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.files = []
+        for i, start in enumerate([0.055, 0.052, 0.054, 0.053, 0.025, 0.022, 0.024, 0.023]):
+            cls.files.append(cls.folder / f"m{i + 1}.csv")
+            machine = ["constants.hardening=9000", "parameters.k=200", "parameters.d=0.6", f"nuisance.x0={start}"]
+            result = call("simulate", RING, "--noise", "--csv", cls.files[i], *machine, f"seed={i}")
+            assert result.returncode == 0, result.stderr
+        cls.tracking = cls.folder / "tracking.yaml"
+        cls.tracking.write_text("tracking:\n  time: {}\n")
+
+    def track(self, state, *files):
+        result = call("track", RING, *files, "--state", self.folder / state, "--tracking", self.tracking)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        alarms = [json.loads(line)["track"]["alarms"] for line in result.stdout.splitlines()]
+        return [alarm for one in alarms for alarm in one]
+
+    def test_a_term_that_the_model_lacks_is_a_rival_of_a_change(self):
+        page = self.folder / "page.html"
+        alarms = self.track("a.h5", *self.files, "--page", page)
+        self.assertTrue(alarms)
+        verdict = alarms[-1]["drift_or_model"]
+        diagnosis = verdict["diagnosis"]
+        self.assertGreater(alarms[-1]["time"], 4)
+        self.assertIn("cubic_spring.x", [diagnosis["term"], *diagnosis["or"]])
+        self.assertTrue(diagnosis["explains"])
+        self.assertGreater(diagnosis["log_evidence_over_change"], -3)
+        self.assertIn(diagnosis["term"], verdict["rivals"])
+        self.assertIn(f"the model lacks {diagnosis['term']}", verdict["test"])
+        self.assertIn(diagnosis["says"], page.read_text())
+
+    def test_recordings_are_read_again_as_long_as_they_are_at_hand(self):
+        for state, is_at_hand in (("b.h5", True), ("c.h5", False)):
+            with self.subTest(state=state):
+                inbox = self.folder / state.replace(".h5", "")
+                inbox.mkdir()
+                alarms = []
+                for file in self.files:
+                    here = inbox / file.name
+                    shutil.copy(file, here)
+                    alarms += self.track(state, here)
+                    if not is_at_hand:
+                        here.unlink()
+                diagnosis = alarms[-1]["drift_or_model"]["diagnosis"]
+                self.assertEqual("term" in diagnosis, is_at_hand)
+                if not is_at_hand:
+                    self.assertIn("no recording from before it is at hand any more", diagnosis["says"])
 
 
 class TrackTrials(FolderTestCase):

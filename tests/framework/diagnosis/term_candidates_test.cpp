@@ -14,6 +14,7 @@
 #include "framework/experiment/model/elements/force_elements.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/make_simulator.hpp"
+#include "tests/framework/diagnosis/measured_cart.hpp"
 #include "tests/framework/experiment/experiments.hpp"
 
 namespace twinmap {

@@ -1,5 +1,6 @@
 #include "framework/tracking/track_file.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "framework/base/files/atomic_file.hpp"
@@ -38,6 +39,18 @@ TEST_F(TrackFile, GoesOnWithTheSameBits) {
   EXPECT_EQ(tracking::flatten(loaded->twin.getNow().tracker.getState()),
             tracking::flatten(twin_.getNow().tracker.getState()));
   EXPECT_EQ(loaded->twin.getNow().alarm_count, twin_.getNow().alarm_count);
+}
+
+TEST_F(TrackFile, KeepsDiagnoses) {
+  twin_.note({7.0, true, 0, 5.0, R"({"says": "nothing"})"});
+  write(60);
+  const std::optional<LoadedTrack> loaded = read(kIdentity);
+  ASSERT_EQ(loaded->twin.getDiagnoses().size(), 1U);
+  const AlarmDiagnosis& read = loaded->twin.getDiagnoses().front();
+  EXPECT_EQ(read.announced, 7.0);
+  EXPECT_TRUE(read.is_of_several);
+  EXPECT_EQ(read.time, 5.0);
+  EXPECT_EQ(read.answer, R"({"says": "nothing"})");
 }
 
 TEST_F(TrackFile, IsAsLargeAfterMoreMeasurements) {
@@ -79,6 +92,29 @@ TEST_F(TrackFile, HistoryBehindTheStateIsCutOff) {
   EXPECT_EQ(TrackHistory(lines, answered).read(2, 1).size(), 1U);
   EXPECT_EQ(std::filesystem::file_size(lines), answered);
   EXPECT_THROW(TrackHistory(lines, answered + 1), std::runtime_error);
+}
+
+TEST_F(TrackFile, HistoryKnowsWhatWasCounted) {
+  const std::filesystem::path lines = folder_ / "track.jsonl";
+  const std::vector<TrackRecord> records = testing::makeRecords(30);
+  std::vector<std::string> digests;
+  std::uint64_t bytes = 0;
+  for (int i = 0; i < 2; ++i) {  // the second goes on with the file of the first
+    TrackHistory history(lines, bytes);
+    for (int j = 0; j < 20; ++j) {
+      const std::string digest = fmt::format("{:016x}{:016x}", 20 * i + j, 7);
+      EXPECT_FALSE(history.contains(digest));
+      TrackRecord record = records[static_cast<std::size_t>(j)];
+      record.source = "of \"digest\":\"0\".csv";
+      record.digest = digest;
+      history.add(record);
+      digests.push_back(digest);
+      for (const std::string& known : digests) {
+        EXPECT_TRUE(history.contains(known));
+      }
+    }
+    bytes = history.getBytes();
+  }
 }
 
 }  // namespace

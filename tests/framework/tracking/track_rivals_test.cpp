@@ -21,18 +21,38 @@ std::deque<CourseSample> makeCourse(bool follows) {
   return course;
 }
 
-tracking::Change makeChange() {
-  tracking::Change change;
-  change.time = 20.0;
-  return change;
-}
-
 TEST(Rivals, AreWhatExplainsTheCourseAsWell) {
-  EXPECT_EQ(findRivals(makeCourse(true), makeChange()), std::vector<std::string>{"the amplitude of x"});
+  EXPECT_EQ(findRivals(makeCourse(true), {0}, 20.0), std::vector<std::string>{"the amplitude of x"});
 }
 
 TEST(Rivals, AreNoneOfAStep) {
-  EXPECT_TRUE(findRivals(makeCourse(false), makeChange()).empty());
+  EXPECT_TRUE(findRivals(makeCourse(false), {0}, 20.0).empty());
+}
+
+TEST(Rivals, OfSeveralParametersExplainAllOfThem) {
+  std::deque<CourseSample> course;
+  for (const bool second_follows : {true, false}) {
+    const std::deque<CourseSample> one = makeCourse(true), other = makeCourse(second_follows);
+    course.clear();
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      course.push_back(one[i]);
+      course.back().estimate = Eigen::Vector2d(one[i].estimate[0], 3.0 * other[i].estimate[0]);
+      course.back().variances = Eigen::Vector2d(1e-4, 9e-4);
+    }
+    EXPECT_EQ(findRivals(course, {0, 1}, 20.0).size(), second_follows ? 1U : 0U);
+  }
+  for (CourseSample& sample : course) {  // the one that does not follow is not seen: nothing speaks against
+    sample.variances[1] = std::numeric_limits<double>::infinity();
+  }
+  EXPECT_EQ(findRivals(course, {0, 1}, 20.0).size(), 1U);
+}
+
+TEST(Rivals, DoNotStandStill) {
+  std::deque<CourseSample> course = makeCourse(true);
+  for (CourseSample& sample : course) {
+    sample.covariates[0].value = 0.1;
+  }
+  EXPECT_TRUE(findRivals(course, {0}, 20.0).empty());
 }
 
 TEST(Rivals, ThatRecurAreThoseOfWhateverChangesNext) {

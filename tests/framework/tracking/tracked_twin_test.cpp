@@ -55,6 +55,42 @@ TEST(TrackedTwin, AnnouncesAStep) {
   EXPECT_TRUE(alarm.rivals.empty());
 }
 
+/// Both parameters jump by 40 sds at the 40th, and with them what they follow.
+std::vector<TrackRecord> makeJump(int count) {
+  std::vector<TrackRecord> records = testing::makeRecords(count);
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    records[i].covariates[0].value = i < 40 ? 0.0 : 5.0;
+    records[i].estimate += i < 40 ? Eigen::Vector2d(0.0, 0.0) : Eigen::Vector2d(0.2, -0.4);
+    records[i].measurement.values = records[i].estimate / 0.01;
+  }
+  return records;
+}
+
+TEST(TrackedTwin, NamesRivalsOfSeveralParametersAtOnce) {
+  const TrackedTwin twin = track(makeJump(44), 100);
+  ASSERT_EQ(twin.getNow().alarms.size(), 1U);
+  const TrackAlarm& alarm = twin.getNow().alarms.front();
+  EXPECT_TRUE(alarm.is_of_several);
+  EXPECT_EQ(alarm.change.time, 400.0);  // of the first that did not fit
+  EXPECT_EQ(alarm.rivals, std::vector<std::string>{"the amplitude of x"});
+}
+
+TEST(TrackedTwin, KeepsTheDiagnosisOfAnAlarmThatStays) {
+  TrackedTwin twin = track(makeJump(44), 100);
+  const TrackAlarm* alarm = twin.findUndiagnosed();
+  ASSERT_NE(alarm, nullptr);
+  twin.note({alarm->announced, true, alarm->change.parameter, alarm->change.time, "{}"});
+  EXPECT_EQ(twin.findUndiagnosed(), nullptr);
+  TrackRecord late = makeJump(44)[30];
+  late.measurement.time += 1.0;
+  twin.add(late);
+  EXPECT_EQ(twin.findUndiagnosed(), nullptr);
+  for (int i = 0; i < 100; ++i) {
+    twin.note({static_cast<double>(i)});
+  }
+  EXPECT_EQ(twin.getDiagnoses().size(), kKeptAlarms);
+}
+
 TEST(TrackHistory, SmoothsOnBothSidesOfAStep) {
   const auto [used, filtered, smoothed] =
       calcTrackCourse(testing::makeRecords(60), testing::makeModel()).whole;
@@ -67,12 +103,18 @@ TEST(TrackHistory, SmoothsOnBothSidesOfAStep) {
 }
 
 TEST(TrackRecord, IsReadBackWithTheSameBits) {
-  const TrackRecord record = testing::makeRecords(8).back();
+  TrackRecord record = testing::makeRecords(8).back();
+  record.trial = "free";
+  record.start = 0.1;
+  record.is_file = true;
   const TrackRecord read = readRecord(writeRecord(record), 2, 1);
   EXPECT_EQ(read.measurement.values, record.measurement.values);
   EXPECT_EQ(read.measurement.rows, record.measurement.rows);
   EXPECT_TRUE(std::isnan(read.measurement.conditions[0]));
   EXPECT_TRUE(read.isSame(record));
+  EXPECT_EQ(read.trial, "free");
+  EXPECT_EQ(read.start, 0.1);
+  EXPECT_TRUE(read.is_file);
   EXPECT_THROW(readRecord("{}", 2, 1), std::runtime_error);
   EXPECT_THROW(readRecord(writeRecord(record), 3, 1), std::runtime_error);
 }

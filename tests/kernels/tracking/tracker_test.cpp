@@ -229,6 +229,46 @@ TEST(Tracker, EstimatesRatesWithinAFactorOfTwo) {
   EXPECT_GE(within, kLives - 2);
 }
 
+/// The belief after 30 measurements of a walk whose rate is known or not, and years without any that says
+/// something.
+Belief waitForYears(double rate, double prior, bool comes) {
+  Model model = testing::makeModel(1, rate);
+  model.covariance(0, 0) = prior;
+  testing::LivingMachine machine(1, {0.5}, 4);
+  Tracker tracker(model);
+  for (int i = 0; i < 30; ++i) {
+    tracker.advance(machine.measure());
+  }
+  constexpr double kYears = 1e6;  // steps: the walk's sd is five times the bounds' half-width by then
+  if (comes) {
+    for (int i = 1; i <= 500; ++i) {
+      Measurement empty{30.0 + i * kYears / 500.0, MatrixXd(0, 1), VectorXd(0),
+                        VectorXd::Constant(1, std::numeric_limits<double>::infinity()), VectorXd()};
+      tracker.advance(empty);
+    }
+  } else {
+    Measurement after = machine.measure();
+    after.time += kYears;
+    after.rows *= 1e-6;  // it says next to nothing
+    after.values *= 1e-6;
+    tracker.advance(after);
+  }
+  return tracker.calcBelief();
+}
+
+TEST(Tracker, TakesNoWalkBeyondTheBounds) {
+  for (const double rate : {kUnknown, testing::calcRate(0.5)}) {
+    for (const bool comes : {true, false}) {
+      const double variance = waitForYears(rate, 1.0 / 3.0, comes).covariance(0, 0);
+      EXPECT_LT(variance, 1.01 / 3.0);
+      EXPECT_GT(variance, std::isnan(rate) ? 0.1 : 0.99 / 3.0);  // rates that are slow have a share
+    }
+  }
+  // a walk may leave a narrow prior; a wide one stays as it was
+  EXPECT_NEAR(waitForYears(testing::calcRate(0.5), 1e-4, true).covariance(0, 0), 1.0 / 3.0, 1e-9);
+  EXPECT_NEAR(waitForYears(testing::calcRate(0.5), 0.6, true).covariance(0, 0), 0.6, 1e-9);
+}
+
 TEST(Tracker, LearnsASlope) {
   Model model = testing::makeModel(1, 0.0);
   model.drifts[0].has_slope = true;
