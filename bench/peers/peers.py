@@ -78,11 +78,6 @@ PEERS = [
         "plain",
         machines=10,
         model="_mujoco.py",
-        cannot={
-            "servo_axis": "its actuators have no controller with states of its own",
-            "stick_slip": "its friction has no bristle",
-            "seven_joint_arm": "its joints have no friction that grows as tanh",
-        },
     ),
     Peer(
         "pypesto", "pyPESTO, profiles, on twinmap's simulations", "pypesto_profiles", "plain", machines=10, cannot=ARM
