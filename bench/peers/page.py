@@ -85,7 +85,8 @@ class Page:
                     self.cells[kind.name, peer.name] = judge(lines, self.truths[kind.name])
 
     def explain_empty(self, peer, kind):
-        return peer.explain_lack(kind) or self.remarks["not run"]
+        known = self.remarks.get(kind.name, {}).get("not run", {})
+        return peer.explain_lack(kind) or known.get(peer.name, self.remarks["not run"])
 
     def make_overview(self):
         names = [kind.name for kind in KINDS]
