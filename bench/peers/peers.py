@@ -36,7 +36,10 @@ class Peer:
 
 
 UNKNOWN = {"spikes": "a map is trained for a noise that is known"}
-ARM = {"seven_joint_arm": "not tried: 40 parameters"}
+ARM = {
+    "seven_joint_arm": "a map from some hundred simulations is for few parameters; these are 40, and 1000 simulations take 13 minutes"
+}
+PROFILES = {"seven_joint_arm": "40 profiles take days: a Jacobian is 160 simulations of 0.4 s"}
 PEERS = [
     Peer("twinmap_infer", "twinmap, `infer FILE.yaml`", "twinmap_infer", "plain"),
     Peer(
@@ -80,7 +83,12 @@ PEERS = [
         model="_mujoco.py",
     ),
     Peer(
-        "pypesto", "pyPESTO, profiles, on twinmap's simulations", "pypesto_profiles", "plain", machines=10, cannot=ARM
+        "pypesto",
+        "pyPESTO, profiles, on twinmap's simulations",
+        "pypesto_profiles",
+        "plain",
+        machines=10,
+        cannot=PROFILES,
     ),
     *[
         Peer(
@@ -97,6 +105,15 @@ PEERS = [
     ],
     Peer(
         "sklearn", "scikit-learn, a map alone", "sklearn_map", "plain", beside="twinmap_map", cannot={**UNKNOWN, **ARM}
+    ),
+    Peer(
+        "figaroh",
+        "FIGAROH, torque regression, with priors",
+        "figaroh_arm",
+        "figaroh",
+        machines=10,
+        model="_figaroh.py",
+        only=("seven_joint_arm",),
     ),
     Peer("gpytorch", "GPyTorch, a map alone", "gpytorch_map", "torch", beside="twinmap_map", cannot={**UNKNOWN, **ARM}),
 ]

@@ -1,24 +1,17 @@
 """Joints under PD laws are MuJoCo's actuators with an affine bias; friction as a tanh is in its callback."""
-from pathlib import Path
-
-import mujoco
 import numpy as np
-import yaml
+from arm_reference import KD, KP, calc_reference
 
 #: RK4 is off by 0.01 sds of the noise.
 STEP = 5e-3
 JOINTS = range(1, 8)
 PLACES = ["0 0 0.33", "0 0 0", "0 0 0.32", "0.08 0 0", "-0.08 0 0.38", "0 0 0", "0.09 0 0"]
-KP, KD = [600, 600, 600, 600, 250, 150, 50], [30, 30, 30, 30, 10, 10, 5]
 LINK = """<body name="L{i}" pos="{place}"><inertial pos="0 0 0" mass="3" diaginertia="1 1 1"/>
 <joint name="q{i}" type="hinge" axis="{axis}"/>"""
 LINKS = [LINK.format(i=i, place=PLACES[i - 1], axis="0 0 1" if i % 2 else "0 1 0") for i in JOINTS]
 ACTUATORS = "".join(f'<general name="q{i}" joint="q{i}" biastype="affine"/>' for i in JOINTS)
 XML = f"""<mujoco><option gravity="0 0 -9.81"/><worldbody>{"".join(LINKS)}{"</body>" * 7}</worldbody>
 <actuator>{ACTUATORS}</actuator><custom><numeric name="f" data="0 0 0 0 0 0 0"/></custom></mujoco>"""
-#: The sines of the references are those of the experiment.
-EXPERIMENT = Path(__file__).resolve().parents[3] / "experiments/mechanisms/seven_joint_arm.yaml"
-TRIALS = yaml.safe_load(EXPERIMENT.read_text())["trials"]
 
 
 def find_center(i, p):
@@ -43,8 +36,7 @@ def start(trial):
 
 
 def control(t, trial):
-    add = lambda sines: sum(s["amplitude"] * np.sin(2 * np.pi * s["frequency"] * t + s["phase"]) for s in sines)
-    return np.stack([add(TRIALS[trial]["excitation"][f"r{i}"]["sines"]) for i in JOINTS], axis=1)
+    return calc_reference(t, trial)
 
 
 def rub(model, data):

@@ -33,7 +33,7 @@ def fit(simulate, measured, sds, starts, case, loss="linear"):
         least_squares(
             lambda x: np.append((simulate(x) - measured) / sds, case.depart(x)),
             start,
-            lambda x: np.vstack([simulate.differentiate(x) / sds[:, None], priors]),
+            lambda x: np.asfortranarray(np.vstack([simulate.differentiate(x) / sds[:, None], priors])),
             (case.lower, case.upper),
             x_scale=case.upper - case.lower,
             loss=loss,
