@@ -3,6 +3,8 @@
 All give parameters; the prediction fits what each window leaves unknown besides (its initial state), for all alike.
 """
 import json
+import resource
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -22,7 +24,7 @@ ASKED = {
     "pypesto": "pyPESTO, profiles, on twinmap's simulations",
     "figaroh": "FIGAROH, torque regression with friction and offset",
 }
-#: Of the clock, in seconds, for what a peer's script may take; all that answer take less.
+#: Seconds of a processor that a peer's script may take; those that answer take 103 at most.
 LONGEST = 600
 #: What is asked about some machines alone.
 ONLY = {"figaroh": ["emps"]}
@@ -117,12 +119,13 @@ class RealMachine:
         out, variables = self.folder / f"{name}.json", self.environments.get_variables(environment)
         command = [self.environments.get_python(environment), HERE / "scripts" / script, *arguments, out]
         if not out.exists():
+            limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST))
             try:
-                run(*command, *self.windows["fit"], env=variables, timeout=LONGEST)
-            except subprocess.TimeoutExpired:
-                return {"failed": f"stopped after {LONGEST} s", "predicted": []}
+                run(*command, *self.windows["fit"], env=variables, preexec_fn=limit)
             except subprocess.CalledProcessError as error:
-                return {"failed": f"ended with status {error.returncode}", "predicted": []}
+                is_late = error.returncode in (-signal.SIGXCPU, -signal.SIGKILL)
+                why = f"stopped after {LONGEST} s" if is_late else f"ended with status {error.returncode}"
+                return {"failed": why, "predicted": []}
         return json.loads(out.read_text())
 
     def write_friction(self):
