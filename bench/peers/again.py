@@ -30,9 +30,9 @@ def is_same(one, two):
 
 def calc_difference(one, two):
     mean, sd, mean_again, sd_again = (np.array(line[key], float) for line in (one, two) for key in ("mean", "sd"))
-    finite = np.isfinite(sd) & np.isfinite(sd_again)
-    of_means = np.abs(mean - mean_again)[finite] / sd[finite]
-    return max(of_means, default=0), max(np.abs(sd_again / sd - 1)[finite], default=0)
+    known = np.isfinite(sd) & np.isfinite(sd_again)
+    of_means = np.abs(mean - mean_again)[known] / sd[known]
+    return max(of_means, default=0), max(np.abs(sd_again[known] / sd[known] - 1), default=0)
 
 
 def make_row(peer, pairs):
