@@ -6,7 +6,8 @@ Usage: bench/peers/run.py BUILD STORE [--peers A,B] [--cases A,B] [--machines N]
 BUILD is a build of twinmap with its Python package (build/release). STORE, outside of the source tree, keeps environments,
 recordings and answers (a line of JSON each): a call that was stopped goes on where it ended. --real: the recordings of the real
 machines, as bench/real_machines.py takes them, which are not part of the project. --page writes the page from what
-STORE has, and --only-page runs nothing. --again: the page says in what answers differ from those of the store OTHER, a second run. Versions are pinned in bench/peers/requirements and printed.
+STORE has, and --only-page runs nothing. --again: the page says in what answers differ from those of the store OTHER, a second
+run. Versions are pinned in bench/peers/requirements and printed.
 """
 import argparse
 import subprocess
