@@ -72,6 +72,12 @@ class Case:
         """Of the noise, as read() orders samples; 1 where it is unknown."""
         return np.tile(np.repeat([1.0 if sd is None else sd for sd in self.noise], len(self.times)), len(self.trials))
 
+    def depart(self, x):
+        """From the means of priors, in their sds; x has a parameter a row, and may have columns."""
+        known = [i for i, prior in enumerate(self.priors) if prior]
+        mean, sd = np.array([self.priors[i] for i in known]).reshape(-1, 2).T
+        return ((x[known].T - mean) / sd).T
+
     def is_noise_known(self):
         return None not in self.noise
 

@@ -85,7 +85,8 @@ class Page:
                     self.cells[kind.name, peer.name] = judge(lines, self.truths[kind.name])
 
     def explain_empty(self, peer, kind):
-        return peer.explain_lack(kind) or self.remarks["not run"]
+        known = {**self.remarks["not run"], **self.remarks.get(kind.name, {}).get("not run", {})}
+        return peer.explain_lack(kind) or known.get(peer.name, known["any"])
 
     def make_overview(self):
         names = [kind.name for kind in KINDS]
@@ -103,16 +104,16 @@ class Page:
     def make_case(self, kind):
         text = f"## {kind.name}\n\n{kind.about[0].upper()}{kind.about[1:]}.\n\n"
         text += f"| {' | '.join(COLUMNS)} |\n|---|{'--:|' * (len(COLUMNS) - 1)}\n"
-        lacking = []
+        lacking = {}
         for peer in PEERS:
             cell = self.cells.get((kind.name, peer.name))
             if cell and cell.answered:
                 text += make_row(peer, kind, cell)
             elif not peer.only:
                 why = cell.failures[0].split("\n")[0][:160] if cell else self.explain_empty(peer, kind)
-                lacking.append(f"{peer.title} ({why})")
+                lacking.setdefault(why, []).append(peer.title)
         if lacking:
-            text += f"\nWithout an answer: {'; '.join(lacking)}.\n"
+            text += "\nWithout an answer:\n\n" + "".join(f"- {why}: {'; '.join(who)}\n" for why, who in lacking.items())
         return text + self.make_words(kind) + self.make_remarks(kind) + "\n"
 
     def make_words(self, kind):

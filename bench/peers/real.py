@@ -3,6 +3,8 @@
 All give parameters; the prediction fits what each window leaves unknown besides (its initial state), for all alike.
 """
 import json
+import resource
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -18,8 +20,12 @@ ASKED = {
     "plain": "twinmap, `infer --joint`",
     "diagnosed": "twinmap, `diagnose`, its corrected model",
     "scipy": "SciPy `least_squares` on twinmap's simulations",
+    "mujoco": "MuJoCo 4.0 `sysid`",
+    "pypesto": "pyPESTO, profiles, on twinmap's simulations",
     "figaroh": "FIGAROH, torque regression with friction and offset",
 }
+#: Seconds of a processor that a peer's script may take; those that answer take 103 at most.
+LONGEST = 600
 #: What is asked about some machines alone.
 ONLY = {"figaroh": ["emps"]}
 
@@ -95,24 +101,32 @@ class RealMachine:
         }
 
     def scipy(self):
-        out = self.folder / "scipy.json"
-        command = [
-            self.environments.get_python("plain"),
-            HERE / "scripts/real_scipy.py",
-            self.folder,
-            self.recording,
-            out,
-        ]
-        run(*command, *self.windows["fit"], env=self.environments.get_variables("plain"))
-        return json.loads(out.read_text())
+        return self.run_script("scipy", "plain", "real_scipy.py", self.folder, self.recording)
+
+    def mujoco(self):
+        return self.run_script("mujoco", "plain", "real_mujoco.py", self.folder, self.recording)
+
+    def pypesto(self):
+        return self.run_script("pypesto", "plain", "real_pypesto.py", self.folder, self.recording)
 
     def figaroh(self):
-        out = self.folder / "figaroh.json"
-        command = [self.environments.get_python("figaroh"), HERE / "scripts/figaroh_emps.py"]
-        recording = self.folder / self.recording
-        run(*command, recording, out, *self.windows["fit"], env=self.environments.get_variables("figaroh"))
+        answer = self.run_script("figaroh", "figaroh", "figaroh_emps.py", self.folder / self.recording)
         self.write_friction()
-        return {**json.loads(out.read_text()), "model": "friction.yaml"}
+        return {**answer, "model": "friction.yaml"}
+
+    def run_script(self, name, environment, script, *arguments):
+        """What it wrote; a failure is an answer without values."""
+        out, variables = self.folder / f"{name}.json", self.environments.get_variables(environment)
+        command = [self.environments.get_python(environment), HERE / "scripts" / script, *arguments, out]
+        if not out.exists():
+            limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST))
+            try:
+                run(*command, *self.windows["fit"], env=variables, preexec_fn=limit)
+            except subprocess.CalledProcessError as error:
+                is_late = error.returncode in (-signal.SIGXCPU, -signal.SIGKILL)
+                why = f"stopped after {LONGEST} s" if is_late else f"ended with status {error.returncode}"
+                return {"failed": why, "predicted": []}
+        return json.loads(out.read_text())
 
     def write_friction(self):
         """The model of EMPS with the two terms that FIGAROH fits besides, for its prediction."""
@@ -154,6 +168,8 @@ def describe(store):
 
 
 def make_row(title, answer):
+    if "failed" in answer:
+        return f"| {title} | {answer['failed']} | - | - | - |\n"
     sds = answer.get("sds", {})
     values = ", ".join(
         f"{name} {value:.4g}({show(sds.get(name))})" for name, value in answer["values"].items() if value

@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 """Answers of twinmap and of what a user would take instead, on the same recordings, and the page that compares them.
 
-Usage: bench/peers/run.py BUILD STORE [--peers A,B] [--cases A,B] [--machines N] [--real FOLDER] [--page docs/benchmarks/peers.md]
+Usage: bench/peers/run.py BUILD STORE [--peers A,B] [--cases A,B] [--machines N] [--real FOLDER] [--page docs/benchmarks/peers.md [--again OTHER]]
 
 BUILD is a build of twinmap with its Python package (build/release). STORE, outside of the source tree, keeps environments,
 recordings and answers (a line of JSON each): a call that was stopped goes on where it ended. --real: the recordings of the real
 machines, as bench/real_machines.py takes them, which are not part of the project. --page writes the page from what
-STORE has, and --only-page runs nothing. Versions are pinned in bench/peers/requirements and printed.
+STORE has, and --only-page runs nothing. --again: the page says in what answers differ from those of the store OTHER, a second
+run. Versions are pinned in bench/peers/requirements and printed.
 """
 import argparse
 import subprocess
 import sys
 from pathlib import Path
 
+import again
 import real
 from cases import KINDS, Maker
 from environments import Environments
@@ -78,6 +80,7 @@ def main():
     parser.add_argument("--machines", type=int, default=40)
     parser.add_argument("--real", type=Path)
     parser.add_argument("--page", type=Path)
+    parser.add_argument("--again", type=Path)
     parser.add_argument("--only-page", action="store_true", help="run nothing")
     arguments = parser.parse_args()
     kinds, peers = choose(KINDS, arguments.cases), choose(PEERS, arguments.peers)
@@ -90,7 +93,9 @@ def main():
         if arguments.real:
             real.measure(arguments.real, table.store, table.environments, real.ASKED)
     if arguments.page:
-        arguments.page.write_text(write_page(table))
+        text = write_page(table)
+        text += again.describe(table.store, arguments.again.resolve()) if arguments.again else ""
+        arguments.page.write_text(text)
 
 
 if __name__ == "__main__":

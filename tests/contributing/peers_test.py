@@ -6,6 +6,7 @@ from pathlib import Path
 
 SOURCE = Path(os.environ["TWINMAP_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "bench" / "peers"))
+from again import calc_difference, is_same  # noqa: E402
 from judge import compare, judge, list_better  # noqa: E402
 
 
@@ -61,6 +62,21 @@ class Judge(unittest.TestCase):
     def test_less_time_is_better(self):
         quick = judge([dict(answer(1, 0.1, 1.0), seconds=0.5)], truths(0))
         self.assertEqual(compare(quick, judge([answer(1, 0.1, 1.0)], truths(0))), ["time"])
+
+
+class Again(unittest.TestCase):
+    def test_seconds_may_differ(self):
+        self.assertTrue(is_same(answer(1, 0.1, 1.0), dict(answer(1, 0.1, 1.0), seconds=9.0)))
+        self.assertFalse(is_same(answer(1, 0.1, 1.0), answer(1, 0.1, 1.0, ["at a bound"])))
+
+    def test_differences_are_over_the_sd(self):
+        of_mean, of_sd = calc_difference(answer(1, 1.0, 2.0), answer(1, 4.0, 3.0))
+        self.assertAlmostEqual(of_mean, 1.5)
+        self.assertAlmostEqual(of_sd, 0.5)
+
+    def test_infinite_sds_are_left_out(self):
+        unknown = answer(1, 1.0, float("inf"))
+        self.assertEqual(calc_difference(unknown, unknown), (0, 0))
 
 
 if __name__ == "__main__":

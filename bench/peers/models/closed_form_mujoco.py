@@ -27,5 +27,5 @@ def control(t, trial):
     return np.stack([np.ones_like(t), np.sin(np.pi * t)], axis=1)
 
 
-def observe(q, v, p):
-    return [q[:, 0]]
+def observe(s, p):
+    return [s.q[:, 0]]

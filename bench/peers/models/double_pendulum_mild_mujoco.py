@@ -41,5 +41,5 @@ def control(t, trial):
     return pulse(t, 10, 0.1, 0.3)[:, None]
 
 
-def observe(q, v, p):
-    return [q[:, 0], q[:, 1], q[:, 0] + p["L1"] * np.sin(q[:, 1]) + 0.25 * np.sin(q[:, 1] + q[:, 2])]
+def observe(s, p):
+    return [s.q[:, 0], s.q[:, 1], s.q[:, 0] + p["L1"] * np.sin(s.q[:, 1]) + 0.25 * np.sin(s.q[:, 1] + s.q[:, 2])]

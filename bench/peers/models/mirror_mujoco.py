@@ -27,5 +27,5 @@ def control(t, trial):
     return pulse(t, 1, 0.05, 0.2)[:, None]
 
 
-def observe(q, v, p):
-    return [q[:, 0]]
+def observe(s, p):
+    return [s.q[:, 0]]

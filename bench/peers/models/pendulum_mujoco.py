@@ -29,5 +29,5 @@ def control(t, trial, end=8):
     return (0 if trial == "free" else 1) * chirp(t, 1, 0.2, 2, end)[:, None]
 
 
-def observe(q, v, p):
-    return [q[:, 0]]
+def observe(s, p):
+    return [s.q[:, 0]]

@@ -25,5 +25,5 @@ def control(t, trial):
     return chirp(t, 2, 0.5, 5, 4)[:, None]
 
 
-def observe(q, v, p):
-    return [q[:, 0]]
+def observe(s, p):
+    return [s.q[:, 0]]

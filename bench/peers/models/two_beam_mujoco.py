@@ -35,5 +35,5 @@ def control(t, trial):
     return np.stack([pulse(t, 5, 0.2, 0.25), pulse(t, 0.075, 0.2, 0.25)], axis=1)
 
 
-def observe(q, v, p):
-    return [q[:, 0], q[:, 1]]
+def observe(s, p):
+    return [s.q[:, 0], s.q[:, 1]]

@@ -59,27 +59,31 @@ def make_unknown(case, simulate, measured):
     return pypesto.Problem(objective, *bounds, x_names=[*case.names, "log_sd"]), ScipyOptimizer("L-BFGS-B")
 
 
-def infer(case, machine, simulate):
-    np.random.seed(machine)
-    before, measured = simulate.count, case.read(machine)
-    make = make_known if case.is_noise_known() else make_unknown
-    problem, optimizer = make(case, simulate, measured)
+def profile(problem, optimizer, names):
+    """Best values, sds, intervals by level, and what is said, of the parameters that are named, which are the first."""
     result = minimize(problem, optimizer, n_starts=STARTS, progress_bar=False)
-    count = len(case.names)
+    count = len(names)
     result = parameter_profile(
         problem, result, optimizer, profile_index=np.arange(count), profile_options=STEPS, progress_bar=False
     )
     intervals = {95: [], 50: []}
     for level, bounds in intervals.items():
-        for i, profile in enumerate(result.profile_result.list[0][:count]):
+        for i, one in enumerate(result.profile_result.list[0][:count]):
             ratio = chi2_quantile_to_ratio(level / 100)
-            lower, upper = calculate_approximate_ci(profile.x_path[i], profile.ratio_path, ratio)
+            lower, upper = calculate_approximate_ci(one.x_path[i], one.ratio_path, ratio)
             bounds.append([[float(lower), float(upper)]])
     sd = np.diff(np.array(intervals[95])[:, 0], axis=1)[:, 0] / (2 * SDS_95)
-    best = result.optimize_result.list[0]
-    found = np.array(best.x)[:count]
-    at = [name for name, x, a, b in zip(case.names, found, case.lower, case.upper) if not a < x < b]
-    said = [f"{name} at a bound" for name in at]
+    found = np.array(result.optimize_result.list[0].x)[:count]
+    at = [name for name, x, a, b in zip(names, found, problem.lb, problem.ub) if not a < x < b]
+    return found, sd, intervals, [f"{name} at a bound" for name in at]
+
+
+def infer(case, machine, simulate):
+    np.random.seed(machine)
+    before, measured = simulate.count, case.read(machine)
+    make = make_known if case.is_noise_known() else make_unknown
+    problem, optimizer = make(case, simulate, measured)
+    found, sd, intervals, said = profile(problem, optimizer, case.names)
     return Answer(found, sd, intervals[95], intervals[50], said, simulate.count - before)
 
 

@@ -1,5 +1,7 @@
 """scipy.optimize.least_squares on twinmap's simulations, from eight starts, with the covariance of its Jacobian.
 
+Priors are rows of the residual; where all have one, their means are the one start.
+
 Documentation: least_squares (bounds, x_scale, method trf), curve_fit (covariance by the Jacobian), the cookbook's robust regression
 (loss soft_l1). Unknown noise: its scale is the residual's median absolute deviation, and the fit is repeated with it twice.
 Tried: losses linear and soft_l1 where the noise is unknown (the latter is kept), one start and eight.
@@ -19,16 +21,19 @@ STARTS = 8
 
 def prepare(case):
     starts = qmc.scale(qmc.LatinHypercube(len(case.lower), seed=1).random(STARTS), case.lower, case.upper)
+    if all(case.priors):
+        starts = [np.array(case.priors)[:, 0]]
     return (Simulations(case), starts), 0
 
 
 def fit(simulate, measured, sds, starts, case, loss="linear"):
     """The best of all starts."""
+    priors = case.depart(np.eye(len(case.lower))) - case.depart(np.zeros((len(case.lower), 1)))
     found = [
         least_squares(
-            lambda x: (simulate(x) - measured) / sds,
+            lambda x: np.append((simulate(x) - measured) / sds, case.depart(x)),
             start,
-            lambda x: simulate.differentiate(x) / sds[:, None],
+            lambda x: np.asfortranarray(np.vstack([simulate.differentiate(x) / sds[:, None], priors])),
             (case.lower, case.upper),
             x_scale=case.upper - case.lower,
             loss=loss,
