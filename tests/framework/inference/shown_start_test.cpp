@@ -78,11 +78,11 @@ TEST(ShownStart, IsReadThroughASensorThatIsKnown) {
   ASSERT_EQ(shown.size(), 3);
   EXPECT_NEAR(shown[1], 0.25, 1e-12);
   EXPECT_NEAR(shown[2], 1.0, 1e-12);
-  EXPECT_EQ(readShown("outputs.x.gain=k", makeParabola()).size(), 0);
+  EXPECT_EQ(readShown("outputs.x={coordinate: x, offset: x0}", makeParabola()).size(), 0);
 }
 
 TEST(ShownStart, HasTheSpeedThatIsMeasured) {
-  const VectorXd shown = readShown("outputs={v: {speed: x}}", makeParabola());
+  const VectorXd shown = readShown("outputs={x: {speed: x}}", makeParabola());
   ASSERT_EQ(shown.size(), 3);
   EXPECT_TRUE(std::isnan(shown[1]));
   EXPECT_NEAR(shown[2], 1.0, 1e-12);
