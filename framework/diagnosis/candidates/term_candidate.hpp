@@ -15,8 +15,7 @@ struct OwnScale {
   std::string meaning, unit;
   double value = 0.0;
   double reach = 5.0;  ///< more than the steps of a scan
-  /// Whether the term is one at 0 as well, where it acts at once: what is found goes on toward that
-  /// (followToLimit).
+  /// Whether the term is one at 0 as well: what is found goes on toward that (followToLimit).
   bool has_limit = false;
 };
 

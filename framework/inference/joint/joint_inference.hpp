@@ -95,8 +95,8 @@ class JointInferrer {
 
   /// What becomes of a fit that noise does not explain: it is the answer, or where a further search begins.
   enum class Misfits { kAnswers, kStarts };
-  /// Each alone (explainRecording). Where others are to be found from them, and noise does not explain the
-  /// first, the others are searched from its best fit and few points besides, as they lack the same.
+  /// Each alone (explainRecording). kStarts: where noise does not explain the first, others begin at its
+  /// best.
   std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings,
                                                Misfits misfits = Misfits::kAnswers) const;
 
