@@ -9,6 +9,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/log/search_stage.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
+#include "framework/diagnosis/sharp_limit.hpp"
 #include "framework/diagnosis/term_search.hpp"
 #include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -147,13 +148,31 @@ class Diagnoser {
     return step.ranked.front().holds_cautiously && (!step.partner || step.partner->holds_cautiously);
   }
 
+  /// Scales of what was found on toward their limits; those of laws that cannot be simulated so stay.
+  CurrentFit followLimits(CurrentFit fit) const {
+    for (const FoundTerm& term : fit.terms) {
+      ExperimentSpec experiment = fit.experiment;
+      RecordingFit followed{fit.point, fit.chi_square};
+      try {
+        followToLimit(recordings_, term.first, term.candidate, experiment, followed);
+      } catch (const std::runtime_error&) {
+        continue;
+      }
+      fit.experiment = std::move(experiment);
+      fit.point = followed.point;
+      fit.chi_square = followed.chi_square;
+    }
+    return fit;
+  }
+
   /// Takes the last terms back that stand in for something else, then infers with those that are left.
   void finish(const TermSearch& search, Diagnosis& diagnosis) const {
     const std::vector<CurrentFit>& fits = search.getFits();
     const SearchStage stage("infer with what was found");
     diagnosis.after = diagnosis.before;
+    CurrentFit last = fits.front();
     while (diagnosis.found > 0) {
-      const CurrentFit& last = fits[diagnosis.found];
+      last = followLimits(fits[diagnosis.found]);
       diagnosis.after = explain(last.experiment, recordings_, last.point,
                                 searchFrom(!isGross(last.chi_square, last.degrees), options_.posterior));
       DiagnosisStep& step = diagnosis.steps[diagnosis.found - 1];
@@ -163,9 +182,10 @@ class Diagnoser {
       step.found = false;
       diagnosis.steps.resize(diagnosis.found--);
       diagnosis.after = diagnosis.before;
+      last = fits.front();
     }
-    diagnosis.corrected = fits[diagnosis.found].experiment;
-    diagnosis.terms = fits[diagnosis.found].terms;
+    diagnosis.corrected = last.experiment;
+    diagnosis.terms = last.terms;
     average(search, diagnosis);
     if (!diagnosis.after.isExplained() && diagnosis.found == 0) {
       countColours(diagnosis);
@@ -265,6 +285,18 @@ std::vector<std::string> Diagnosis::listAtBounds() const {
     const double width = parameter.bounds.upper - parameter.bounds.lower;
     if (std::min(value - parameter.bounds.lower, parameter.bounds.upper - value) < kNear * width) {
       names.push_back(parameter.name.text);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> Diagnosis::listTermsAtBounds() const {
+  const std::vector<ParameterSpec>& parameters = corrected.model.parameters;
+  std::vector<std::string> names;
+  for (const Index j : after.posterior.beyond) {
+    const auto number = static_cast<std::size_t>(j);
+    if (found > 0 && number >= shared && number < parameters.size()) {
+      names.push_back(parameters[number].name.text);
     }
   }
   return names;

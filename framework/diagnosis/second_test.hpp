@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/diagnosis/scored_candidates.hpp"
+#include "framework/diagnosis/fitted_term.hpp"
 
 namespace twinmap {
 

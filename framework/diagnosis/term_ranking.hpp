@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/diagnosis/diagnosis_step.hpp"
+#include "framework/diagnosis/fitted_term.hpp"
 #include "framework/diagnosis/scored_candidates.hpp"
 
 namespace twinmap {

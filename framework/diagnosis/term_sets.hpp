@@ -33,9 +33,6 @@ std::optional<FittedPair> fitPair(const CurrentFit& current, const RecordedFeatu
                                   const ScoredCandidates& scored, const TermPair& pair, Eigen::Index p,
                                   double level);
 
-/// A chi-square larger by more is noticed where a fit is not linear: three standard deviations.
-constexpr double kNoticedChiSquare = 9.0;
-
 /// The fit without its term number `out`; no point where that fails. Cost: that of a fit.
 CurrentFit fitWithout(const ExperimentSpec& without_terms, const RecordedFeatures& recordings,
                       const CurrentFit& fit, std::size_t out);

@@ -6,7 +6,7 @@
 
 #include "framework/experiment/check/known_names.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/models/start_states.hpp"
+#include "framework/inference/start_readings.hpp"
 
 namespace twinmap {
 
@@ -42,16 +42,17 @@ std::optional<Beginning> readBeginning(const std::vector<FeatureInfo>& infos, co
   return t.size() == kPoints ? std::optional<Beginning>(extrapolate(t, y)) : std::nullopt;
 }
 
-/// The output that is the coordinate itself.
-int findOutput(const ModelSpec& model, const std::string& coordinate) {
-  for (std::size_t o = 0; o < model.outputs.size(); ++o) {
-    const OutputSpec& output = model.outputs[o];
-    if (output.coordinate && output.coordinate->text == coordinate && output.gain.text.empty() &&
-        output.offset.text.empty()) {
-      return static_cast<int>(o);
+/// Of the first output that shows it; one whose sensor is not known says nothing.
+std::optional<double> readState(const std::vector<StartReading>& readings,
+                                const std::vector<FeatureInfo>& infos, const VectorXd& features) {
+  for (const StartReading& reading : readings) {
+    const auto beginning =
+        reading.varies ? std::nullopt : readBeginning(infos, features, static_cast<int>(reading.output));
+    if (beginning) {
+      return reading.read(beginning->value, beginning->slope);
     }
   }
-  return -1;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -60,22 +61,27 @@ VectorXd readShownStart(const ModelSpec& model, const std::vector<FeatureInfo>& 
                         const VectorXd& features) {
   const std::vector<ParameterSpec> unknown = collectUnknown(model);
   const std::vector<std::string> names = collectNames(unknown);
+  const auto find = [&](const StartState& state) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), state.initial.text) -
+                                    names.begin());
+  };
+  std::vector<StartState> states = listStartStates(model);
+  states.erase(std::remove_if(states.begin(), states.end(),
+                              [&](const StartState& state) { return find(state) == names.size(); }),
+               states.end());
+  if (states.empty()) {
+    return {};
+  }
   VectorXd shown = VectorXd::Constant(static_cast<Index>(unknown.size()), std::nan(""));
-  bool is_any = false;
-  for (const StartState& state : listStartStates(model)) {
-    const auto found = std::find(names.begin(), names.end(), state.initial.text);
-    if (found == names.end() || state.kind == StartState::Kind::kState) {
-      continue;
-    }
-    if (const auto beginning = readBeginning(infos, features, findOutput(model, state.name))) {
-      const auto j = found - names.begin();
-      const Bounds& bounds = unknown[static_cast<std::size_t>(j)].bounds;
-      const double value = state.kind == StartState::Kind::kSpeed ? beginning->slope : beginning->value;
-      shown[j] = std::clamp(value, bounds.lower, bounds.upper);
-      is_any = true;
+  ModelNumbers numbers(model);
+  numbers.update(calcBoxCenter(collectSampled(model)));
+  for (const StartState& state : states) {
+    if (const auto value = readState(listReadings(model, state, numbers), infos, features)) {
+      const Bounds& bounds = unknown[find(state)].bounds;
+      shown[static_cast<Index>(find(state))] = std::clamp(*value, bounds.lower, bounds.upper);
     }
   }
-  return is_any ? shown : VectorXd();
+  return shown.array().isNaN().all() ? VectorXd() : shown;
 }
 
 }  // namespace twinmap

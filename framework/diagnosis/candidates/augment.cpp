@@ -156,6 +156,9 @@ AugmentedExperiment addTerm(const ExperimentSpec& experiment, const TermCandidat
     ParameterSpec parameter;
     parameter.name = {scales.back(), {}};
     parameter.bounds = {own.value / own.reach, own.value * own.reach, {}};
+    if (parameter.bounds.lower > 0.0) {
+      parameter.prior = PriorSpec{LogUniformPrior{}};
+    }
     parameter.unit = own.unit;
     parameter.description = own.meaning;
     addParameter(parameter, changed);

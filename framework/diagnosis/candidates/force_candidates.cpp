@@ -38,6 +38,7 @@ struct ScannedTerm {
   bool scale_is_speed;
   double first, factor;
   int count;
+  bool has_limit = false;
 };
 
 constexpr ScannedTerm kScannedTerms[] = {
@@ -46,7 +47,8 @@ constexpr ScannedTerm kScannedTerms[] = {
      true,
      0.01,
      4.0,
-     3},
+     3,
+     true},
     {{"stribeck", "friction at low speed alone", "-{c}*tanh(10*{v}/{s})*exp(-({v}/{s})^2)", 0, 0, true},
      "speed at which it has fallen to a third",
      true,
@@ -113,6 +115,7 @@ void addScannedForce(const ScannedTerm& scanned, const CoordinateSizes& coordina
   TermCandidate candidate = makeForceCandidate(scanned.term, coordinate);
   const std::string length = getLength(coordinate);
   candidate.own_scales = {{scanned.scale_meaning, scanned.scale_is_speed ? length + "/s" : length}};
+  candidate.own_scales.front().has_limit = scanned.has_limit;
   addScanned(candidate, scanned.first * (scanned.scale_is_speed ? coordinate.speed : coordinate.reach),
              scanned.factor, scanned.count, candidates);
 }

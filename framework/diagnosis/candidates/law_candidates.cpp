@@ -99,6 +99,7 @@ void addRelative(const Relative& relative, std::size_t element, const Element& o
   candidate.is_share = true;
   candidate.has_states = relative.sticks;
   candidate.own_scales = {{relative.scale, relative.sticks ? length : length + "/s"}};
+  candidate.own_scales.front().has_limit = true;
   candidate.add = makeAdd(relative, element);
   addScanned(candidate, relative.first * (relative.sticks ? sizes.reach : sizes.speed), relative.factor,
              kScales, candidates);

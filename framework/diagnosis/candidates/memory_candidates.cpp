@@ -57,6 +57,7 @@ void addSticking(const StickingTerm& term, const CoordinateSizes& coordinate,
   candidate.dissipates = true;
   candidate.has_states = true;
   candidate.own_scales = {{"displacement before it slips", getLength(coordinate)}};
+  candidate.own_scales.front().has_limit = true;
   if (term.has_second_scale) {
     candidate.own_scales.push_back({"speed over which it falls by a third", getLength(coordinate) + "/s",
                                     kStribeckSpeed * coordinate.speed});

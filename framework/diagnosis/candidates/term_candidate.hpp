@@ -15,6 +15,8 @@ struct OwnScale {
   std::string meaning, unit;
   double value = 0.0;
   double reach = 5.0;  ///< more than the steps of a scan
+  /// Whether the term is one at 0 as well: what is found goes on toward that (followToLimit).
+  bool has_limit = false;
 };
 
 /// What a term is of.

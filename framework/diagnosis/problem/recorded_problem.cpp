@@ -354,13 +354,18 @@ LinearizedRecordings RecordingsProblem::linearize(const VectorXd& point) const {
   return all;
 }
 
-RecordingFit RecordingsProblem::fit(const MatrixXd& starts) const {
+RecordingFit RecordingsProblem::fit(const MatrixXd& starts, Index held) const {
   PosteriorProblem problem = problem_;
   for (std::size_t k = 0; k < problem.trials.size(); ++k) {
     problem.trials[k].noise = faults_[k];
   }
   ProblemSurface whole(problem);
-  SearchTeam team(whole.upd(), toCoordinates(whole.getCoordinates(), starts));
+  MatrixXd directions(starts.rows(), held < 0 ? 0 : starts.cols());
+  if (held >= 0) {
+    directions.setZero();
+    directions.row(held).setOnes();
+  }
+  SearchTeam team(whole.upd(), toCoordinates(whole.getCoordinates(), starts), directions);
   team.run(BasinSearchOptions{}.max_iterations);
   RecordingFit best;
   for (const LocalSurface& end : team.listEnds()) {

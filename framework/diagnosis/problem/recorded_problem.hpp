@@ -131,8 +131,9 @@ class RecordingsProblem {
   /// recording.
   LinearizedRecordings linearize(const Eigen::VectorXd& point) const;
 
-  /// Searches side by side from points (u x n), the best of which is kept.
-  RecordingFit fit(const Eigen::MatrixXd& starts) const;
+  /// Searches side by side from points (u x n), the best of which is kept. held: a parameter that stays as it
+  /// is there; -1: none does.
+  RecordingFit fit(const Eigen::MatrixXd& starts, Eigen::Index held = -1) const;
 
  private:
   std::vector<std::unique_ptr<const SimulatorRefiner>> simulators_;  // of trials, and recordings of their own

@@ -138,6 +138,7 @@ std::string makeDiagnosisJson(const Diagnosis& diagnosis, const std::string& sou
             {"found", diagnosis.listTerms()},
             {"complete", diagnosis.after.isExplained()},
             {"at_bounds", diagnosis.listAtBounds()},
+            {"terms_at_bounds", diagnosis.listTermsAtBounds()},
             {"before", makeFitJson(diagnosis.before, parameters, diagnosis.shared)},
             {"after", makeFitJson(diagnosis.after, parameters, parameters.size())},
             {"steps", Json::array()}};

@@ -252,6 +252,11 @@ std::string makeDiagnosisTable(const Diagnosis& diagnosis, const std::string& so
       text += fmt::format("  No estimate: {}.\n", diagnosis.after.posterior.message);
     }
     text += alignRows(listParameterRows(diagnosis), 2, "  ");
+    if (const auto names = diagnosis.listTermsAtBounds(); !names.empty()) {
+      text += fmt::format(
+          "  {} at the end of what was searched: widen these bounds in the corrected file (--out).\n",
+          fmt::join(names, ", "));
+    }
     if (diagnosis.averaged.models > 1) {
       text +=
           "  The parameters are those with each of the terms that are not told apart, weighted by "

@@ -188,7 +188,8 @@ LeastMisfit findLeastMisfit(const PosteriorProblem& problem, const MatrixXd& giv
   constexpr int kSteps = 3;  // of many parameters, from the priors' medians
   ProblemSurface whole(problem);
   MisfitSurface& surface = whole.upd();
-  const MatrixXd near = addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn);
+  const MatrixXd near =
+      addShownStart(problem, addMedian(given, whole.getPrior(), surface.getDimensions(), problem.drawn));
   const bool has_many = near.cols() > 0 && surface.getDimensions() > kManyUnknown;
   const MatrixXd lowest = has_many ? MatrixXd(surface.getDimensions(), 0) : findLowest(surface);
   MatrixXd starts(surface.getDimensions(), lowest.cols() + near.cols());

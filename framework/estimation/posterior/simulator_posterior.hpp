@@ -100,9 +100,9 @@ struct LeastMisfit {
 };
 
 /// The best that three searches find, from the best of 32 points all over the bounds, and one from each given
-/// point (u x n, may be empty). Of many parameters, three steps from the given ones or the priors' medians.
-/// To compare gross misfits: no test of other basins. Cost: 32 simulations and some 10 a search. Half of
-/// these have derivatives.
+/// point (u x n, may be empty) and from the start that measurements show (addShownStart). Of many parameters,
+/// three steps from the given ones or the priors' medians. To compare gross misfits: no test of other basins.
+/// Cost: 32 simulations and some 10 a search. Half of these have derivatives.
 LeastMisfit findLeastMisfit(const PosteriorProblem& problem, const Eigen::MatrixXd& given = {});
 
 }  // namespace twinmap

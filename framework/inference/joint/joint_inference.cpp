@@ -55,6 +55,14 @@ void leaveClockBounds(const PosteriorProblem& problem, const std::vector<Explain
   }
 }
 
+/// The machine's parameters where a recording fits best that noise does not explain; else empty. Others lack
+/// the same.
+VectorXd findLead(const ExplainedRecording& first, Index shared) {
+  const SimulatorFit* fit = findFit(first.inferred);
+  const bool leads = fit != nullptr && fit->isSimulated() && !fit->isPlausible();
+  return leads ? VectorXd(first.posterior.best.head(shared)) : VectorXd();
+}
+
 std::vector<std::size_t> listReliable(const std::vector<RecordingInference>& alone) {
   std::vector<std::size_t> reliable;
   for (std::size_t k = 0; k < alone.size(); ++k) {
@@ -257,7 +265,8 @@ const JointInferrer::Member& JointInferrer::find(const std::string& trial) const
 }
 
 ExplainedRecording JointInferrer::explain(const Recording& recording, UnexplainedRecording read,
-                                          const SimulatorPosteriorOptions& options) const {
+                                          const SimulatorPosteriorOptions& options,
+                                          const VectorXd& lead) const {
   const Member& member = find(recording.trial);
   const bool is_own = read.reader != member.reader;
   const RecordingSetup setup =
@@ -266,7 +275,7 @@ ExplainedRecording JointInferrer::explain(const Recording& recording, Unexplaine
                                                  member.reader->getExperiment(), member.reader->getLayout(),
                                                  member.simulator->getSimulator().clone())};
   return explainRecording(setup, std::move(read.found), *recording.table, recording.start, member.known,
-                          options);
+                          options, lead);
 }
 
 std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Recording>& recordings,
@@ -283,10 +292,19 @@ std::vector<ExplainedRecording> JointInferrer::explainAlone(const std::vector<Re
   SearchStage stage("each recording alone", count);
   std::atomic<int> done{0};
   std::vector<ExplainedRecording> alone(recordings.size());
-  runTasks(side_by_side ? threads : 1, recordings.size(), [&](std::size_t k) {
-    alone[k] = explain(recordings[k], std::move(read[k]), options);
+  VectorXd lead;
+  const auto explainOne = [&](std::size_t k) {
+    alone[k] = explain(recordings[k], std::move(read[k]), options, lead);
     stage.show(++done, count);
-  });
+  };
+  const std::size_t first = misfits == Misfits::kStarts && count > 1 ? 1 : 0;
+  if (first > 0) {
+    explainOne(0);
+    lead = findLead(alone.front(), static_cast<Index>(getParameters().size()));
+    options = lead.size() > 0 ? searchNearby(options) : options;
+  }
+  runTasks(side_by_side ? threads : 1, recordings.size() - first,
+           [&](std::size_t k) { explainOne(k + first); });
   return alone;
 }
 

@@ -95,7 +95,8 @@ class JointInferrer {
 
   /// What becomes of a fit that noise does not explain: it is the answer, or where a further search begins.
   enum class Misfits { kAnswers, kStarts };
-  /// Each alone (explainRecording).
+  /// Each alone (explainRecording). kStarts: where noise does not explain the first, others begin at its
+  /// best.
   std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings,
                                                Misfits misfits = Misfits::kAnswers) const;
 
@@ -113,7 +114,7 @@ class JointInferrer {
   const Member& find(const std::string& trial) const;
   /// With a simulator of its own, for a thread of its own.
   ExplainedRecording explain(const Recording& recording, UnexplainedRecording read,
-                             const SimulatorPosteriorOptions& options) const;
+                             const SimulatorPosteriorOptions& options, const Eigen::VectorXd& lead) const;
   /// Of recordings that the model does not explain, or that disagree: of others it would take long.
   static void nameNoise(std::vector<ExplainedRecording>& alone, JointInference& inferred);
   /// Each with the faults that explain it alone. The recordings must outlive it.

@@ -7,6 +7,7 @@
 #include "framework/base/log/search_stage.hpp"
 #include "framework/data/measurement/recording/recorded_times.hpp"
 #include "framework/estimation/levels.hpp"
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clock_search.hpp"
 #include "framework/inference/measurement/alternation.hpp"
 #include "framework/inference/measurement/gram_masses.hpp"
@@ -24,6 +25,7 @@
 namespace twinmap {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
@@ -66,8 +68,8 @@ void takeClock(const ClockedMeasurement& clocked, const VectorXd& known, Inferre
 class Explaining {
  public:
   Explaining(const RecordingSetup& setup, AvailableFeatures found, const VectorXd& known,
-             const SimulatorPosteriorOptions& options)
-      : options_(options), explained_{setup, std::move(found), known, {}, {}, {}} {}
+             const SimulatorPosteriorOptions& options, const VectorXd& lead)
+      : options_(options), lead_(lead), explained_{setup, std::move(found), known, {}, {}, {}} {}
 
   ExplainedRecording explain() {
     const std::string failure = getSimulator().findFailure(explained_.known);
@@ -98,10 +100,20 @@ class Explaining {
   const InferredMeasurement& getInferred() const { return explained_.inferred; }
   InferredMeasurement& upd() { return explained_.inferred; }
 
+  /// Where other recordings of the machine lead (u x 1), or none.
+  MatrixXd listGiven() const {
+    if (lead_.size() == 0) {
+      return {};
+    }
+    VectorXd given = calcBoxCenter(getSimulator().getUnknown());
+    given.head(lead_.size()) = lead_;
+    return given;
+  }
+
   SampledMeasurement sampleAsStated() const {
     const AvailableFeatures& found = explained_.found;
     return getSimulator().sampleAsStated(found.features, explained_.known,
-                                         getSimulator().describeNoise(found.clipped), {},
+                                         getSimulator().describeNoise(found.clipped), listGiven(),
                                          getSimulator().spareMisfit(options_));
   }
 
@@ -113,7 +125,7 @@ class Explaining {
 
   SampledMeasurement sample(const AvailableFeatures& found) const {
     return getSimulator().samplePosterior(found.features, explained_.known,
-                                          getSimulator().describeNoise(found.clipped), {}, options_);
+                                          getSimulator().describeNoise(found.clipped), listGiven(), options_);
   }
 
   void take(SampledMeasurement sampled) {
@@ -230,6 +242,7 @@ class Explaining {
   }
 
   const SimulatorPosteriorOptions& options_;
+  const VectorXd lead_;
   ExplainedRecording explained_;
 };
 
@@ -268,13 +281,13 @@ RecordingSetup makeSetup(std::shared_ptr<const MeasurementReader> reader) {
 
 ExplainedRecording explainRecording(const RecordingSetup& setup, AvailableFeatures found, const Table& table,
                                     std::optional<double> start, const VectorXd& known,
-                                    const SimulatorPosteriorOptions& options) {
+                                    const SimulatorPosteriorOptions& options, const VectorXd& lead) {
   const MeasurementReader& reader = *setup.reader;
   RecordingSetup own = setup;
   if (auto supposed = makeOwnSimulator(reader, *setup.simulator, found, known, options)) {
     own.simulator = std::move(supposed);
   }
-  ExplainedRecording explained = Explaining(own, std::move(found), known, options).explain();
+  ExplainedRecording explained = Explaining(own, std::move(found), known, options, lead).explain();
   InferredMeasurement& inferred = explained.inferred;
   inferred.source = table.source;
   inferred.start = reader.getStart(table, start);

@@ -52,10 +52,12 @@ struct ExplainedRecording {
 ///   without what every other sample is off by (findAlternation)
 ///   a clock with faults (findClockFaults)
 /// Else the simple fault that explains a gross misfit, and what speaks against the model, are named. What is
-/// unknown of the excitation is supposed (makeOwnSimulator). found: readFeatures() of the table.
+/// unknown of the excitation is supposed (makeOwnSimulator). found: readFeatures() of the table. lead: the
+/// machine's parameters, to search from as well; empty: none.
 ExplainedRecording explainRecording(const RecordingSetup& setup, AvailableFeatures found, const Table& table,
                                     std::optional<double> start, const Eigen::VectorXd& known,
-                                    const SimulatorPosteriorOptions& options);
+                                    const SimulatorPosteriorOptions& options,
+                                    const Eigen::VectorXd& lead = {});
 
 /// Remarks noise of an excitation that was not stated and may be what is left (describeUnstatedNoise).
 void nameUnstatedNoise(ExplainedRecording& explained);

@@ -6,14 +6,13 @@
 
 #include "framework/estimation/segments/segmented_recording.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
-#include "framework/simulation/model_numbers.hpp"
+#include "framework/inference/start_readings.hpp"
 
 namespace twinmap {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Kind = StartState::Kind;
 
 namespace {
 
@@ -67,9 +66,7 @@ class Guesser {
     } else if (!state.reach.text.empty()) {
       one.scale = std::abs(calc(state.reach)) / kStateScales;  // its prior ends where it does
     }
-    if (state.kind != Kind::kState) {
-      takeMeasured(state, one);
-    }
+    takeMeasured(state, one);
     return one;
   }
 
@@ -87,26 +84,21 @@ class Guesser {
   }
 
   void takeMeasured(const StartState& state, OneState& one) {
-    for (std::size_t o = 0; o < model_.outputs.size() && !one.measured; ++o) {
-      const OutputSpec& output = model_.outputs[o];
-      const bool of_speed = output.speed && output.speed->text == state.name;
-      const bool of_coordinate = output.coordinate && output.coordinate->text == state.name;
-      if ((of_speed && state.kind == Kind::kSpeed) || of_coordinate) {
-        takeFrom(output, static_cast<Index>(o), of_coordinate && state.kind == Kind::kSpeed, one);
+    for (const StartReading& reading : listReadings(model_, state, numbers_)) {
+      if (!one.measured) {
+        takeFrom(reading, one);
       }
     }
   }
 
-  void takeFrom(const OutputSpec& output, Index column, bool takes_slope, OneState& one) {
-    const double gain = output.gain.text.empty() ? 1.0 : calc(output.gain);
-    const double offset = output.offset.text.empty() ? 0.0 : calc(output.offset);
+  void takeFrom(const StartReading& reading, OneState& one) {
     VectorXd values = one.values;
     std::vector<double> all;  // along the segments too: how far the state goes
     for (Index k = 0; k < values.size(); ++k) {
-      const auto samples = samples_[static_cast<std::size_t>(k)].col(column);
+      const auto samples = samples_[static_cast<std::size_t>(k)].col(reading.output);
       for (Index first = 0; first < samples.size(); first += kLine) {
         const Line line = fitLine(samples.segment(first, std::min(kLine, samples.size() - first)), interval_);
-        const double value = (takes_slope ? line.slope : line.value - offset) / gain;
+        const double value = reading.read(line.value, line.slope);
         if (std::isfinite(value)) {
           all.push_back(value);
           values[k] = first == 0 ? value : values[k];

@@ -66,6 +66,19 @@ TEST(Diagnosis, DoesNotCallAModelExplainedThatLacksWhatStandsOut) {
   EXPECT_EQ(describeBefore(diagnosis), "chi-square 2116 of 1987 degrees of freedom, model_mismatch");
 }
 
+TEST(Diagnosis, SaysWhereTheSearchForAScaleEnded) {
+  Diagnosis diagnosis;
+  diagnosis.shared = 1;
+  for (const char* name : {"k", "stribeck_x", "stribeck_x_scale"}) {
+    diagnosis.corrected.model.parameters.emplace_back();
+    diagnosis.corrected.model.parameters.back().name.text = name;
+  }
+  diagnosis.after.posterior.beyond = {0, 2, 3};  // the last is of a recording alone
+  EXPECT_TRUE(diagnosis.listTermsAtBounds().empty());
+  diagnosis.found = 1;
+  EXPECT_EQ(diagnosis.listTermsAtBounds(), std::vector<std::string>{"stribeck_x_scale"});
+}
+
 TEST(Diagnosis, FindsNothingWhereNothingIsMissing) {
   const Diagnosis diagnosis = diagnoseCart({measureCart(kSound)});
   EXPECT_EQ(diagnosis.found, 0U);

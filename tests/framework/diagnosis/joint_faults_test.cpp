@@ -160,5 +160,31 @@ TEST(JointFaults, AreNotTakenForMissingTerms) {
   EXPECT_GT(coloured.after.posterior.stddev[1], 1.5 * coloured.before.posterior.stddev[1]);
 }
 
+// A force that the model lacks, at a frequency of its own.
+TEST(JointFaults, AreSoughtFromTheFirstRecordingWhereAllLackTheSame) {
+  std::mt19937 random(5);
+  std::vector<Table> tables;
+  for (std::size_t k = 0; k < kRecordings; ++k) {
+    const VectorXd lacking = VectorXd::NullaryExpr(
+        kSamples, [](Index i) { return 40.0 * std::sin(0.02 * 11.0 * static_cast<double>(i)); });
+    tables.push_back(record(0.8 + 0.3 * static_cast<double>(k), makeWhite(random) + lacking));
+  }
+  std::vector<Recording> recordings;
+  for (std::size_t k = 0; k < kRecordings; ++k) {
+    recordings.push_back({"r" + std::to_string(k), "", &tables[k], {}});
+  }
+  const JointInferrer inferrer(makeOscillator(), {});
+  const auto whole = inferrer.explainAlone(recordings);
+  const auto led = inferrer.explainAlone(recordings, JointInferrer::Misfits::kStarts);
+  int of_whole = 0, of_led = 0;
+  for (std::size_t k = 0; k < kRecordings; ++k) {
+    EXPECT_FALSE(whole[k].inferred.posterior->fit->isPlausible());
+    EXPECT_NEAR(led[k].posterior.chi_square / whole[k].posterior.chi_square, 1.0, 1e-5);
+    of_whole += k > 0 ? whole[k].posterior.simulations : 0;
+    of_led += k > 0 ? led[k].posterior.simulations : 0;
+  }
+  EXPECT_LT(2 * of_led, of_whole);
+}
+
 }  // namespace
 }  // namespace twinmap

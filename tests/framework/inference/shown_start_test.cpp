@@ -73,8 +73,19 @@ TEST(ShownStart, StaysWithinTheBounds) {
   EXPECT_EQ(readShown("nuisance.v0.bounds=[-3, 1.5]", makeParabola())[2], 1.5);
 }
 
-TEST(ShownStart, IsNotReadFromASensorWithAGain) {
-  EXPECT_EQ(readShown("outputs.x.gain=2", makeParabola()).size(), 0);
+TEST(ShownStart, IsReadThroughASensorThatIsKnown) {
+  const VectorXd shown = readShown("outputs.x={coordinate: x, gain: 2, offset: 0.5}", makeParabola());
+  ASSERT_EQ(shown.size(), 3);
+  EXPECT_NEAR(shown[1], 0.25, 1e-12);
+  EXPECT_NEAR(shown[2], 1.0, 1e-12);
+  EXPECT_EQ(readShown("outputs.x={coordinate: x, offset: x0}", makeParabola()).size(), 0);
+}
+
+TEST(ShownStart, HasTheSpeedThatIsMeasured) {
+  const VectorXd shown = readShown("outputs={x: {speed: x}}", makeParabola());
+  ASSERT_EQ(shown.size(), 3);
+  EXPECT_TRUE(std::isnan(shown[1]));
+  EXPECT_NEAR(shown[2], 1.0, 1e-12);
 }
 
 }  // namespace
