@@ -34,7 +34,7 @@ std::array<double, 5> calcMoments(double tilt, double curvature, double lower, d
 }  // namespace
 
 BoxSite calcBoxSite(Eigen::Index parameter, double mean, double variance) {
-  constexpr int kMost = 50;
+  constexpr int kMost = 20;
   constexpr double kTolerance = 1e-13, kLongest = 1.0;
   const double stddev = std::sqrt(variance);
   const double to_lower = (-1.0 - mean) / stddev, to_upper = (1.0 - mean) / stddev;

@@ -142,17 +142,17 @@ static void calc_moments(double tilt, double curvature, double lower, double upp
 /* What the bounds -1 and 1 of a uniform prior have added to an estimate with this mean and variance. */
 static void calc_box_site(double mean, double variance, double *precision, double *shift)
 {
-  const double far = 8.0, reach = 24.0, tolerance = 1e-13, sd = sqrt(variance);
+  const double amid = 8.0, reach = 24.0, tolerance = 1e-13, sd = sqrt(variance);
   double lower = (-1.0 - mean) / sd, upper = (1.0 - mean) / sd, tilt = 0.0, curvature = 1.0, m[5];
   int i;
   *precision = 0.0;
   *shift = 0.0;
-  if (!(lower < 0.0 && upper > 0.0) || (lower < -far && upper > far)) {
+  if (!(lower < 0.0 && upper > 0.0) || (lower < -amid && upper > amid)) {
     return;
   }
   lower = lower < -reach ? -reach : lower;
   upper = upper > reach ? reach : upper;
-  for (i = 0; i < 50; ++i) {
+  for (i = 0; i < 20; ++i) {
     double by_tilt, by_both, by_curvature, of_square, determinant, more_tilt, more_curvature, size;
     calc_moments(tilt, curvature, lower, upper, m);
     by_tilt = m[2] - m[1] * m[1];

@@ -59,15 +59,17 @@ struct Operations {
 Operations countOperations(const Sizes& s) {
   const double p = s.p, n = s.n, beliefs = 1.0 + s.unknown * s.rates;
   const double changes = s.window * p;
-  const double likelihood =
-      3.0 * std::pow(p * (p + 1.0) / 2.0, 2) + 6.0 * s.sweeps * p * p * (p - 1.0) + 3.0 * p * p * p;
+  constexpr double kSites = 20.0 * 129.0;  // calcBoxSite()
+  const double likelihood = 3.0 * std::pow(p * (p + 1.0) / 2.0, 2) + 12.0 * s.sweeps * p * p * (p - 1.0) +
+                            5.0 * p * p * p + 12.0 * kSites * p;
   const double filters = beliefs * (p * (2.0 * n * n + 4.0 * n) + 2.0 * p * n);
   const double changed = (changes + p) * p * (2.0 * n + 8.0) + changes * (4.0 * n * n + 2.0 * n);
   const double rates = 5.0 * s.unknown * s.octaves * 10.0;
   Operations operations;
   operations.multiply_adds = likelihood + filters + changed + rates;
-  operations.functions = s.sweeps * p * (p - 1.0) * 2.0 + beliefs * p + changes * (p + 4.0) + 5.0 * changes +
-                         5.0 * s.unknown * (s.octaves + 1.0) + 3.0 * s.unknown * s.rates + 14.0 * p;
+  operations.functions = s.sweeps * p * (p - 1.0) * 4.0 + kSites * p + beliefs * p + changes * (p + 4.0) +
+                         5.0 * changes + 5.0 * s.unknown * (s.octaves + 1.0) + 3.0 * s.unknown * s.rates +
+                         14.0 * p;
   return operations;
 }
 

@@ -19,7 +19,7 @@ using Eigen::Vector2d;
 struct Setting {
   std::vector<ParameterSpec> parameters = testing::makeParameters(2, -10.0, 10.0);
   TrackSpace space{parameters};
-  tracking::Belief prior{Eigen::VectorXd::Zero(2), MatrixXd::Identity(2, 2) / 3.0};
+  TrackPrior prior{{Eigen::VectorXd::Zero(2), MatrixXd::Identity(2, 2) / 3.0}, {}};
 };
 
 Estimate makeEstimate(const Vector2d& mean, const Matrix2d& covariance) {
@@ -36,10 +36,45 @@ TEST(Likelihood, WithThePriorAgainIsThePosterior) {
   const tracking::Measurement said =
       makeTrackMeasurement(makeEstimate(mean, covariance), setting.space, setting.prior);
   const MatrixXd information =
-      said.rows.transpose() * said.rows + test::calcInverse(setting.prior.covariance);
+      said.rows.transpose() * said.rows + test::calcInverse(setting.prior.belief.covariance);
   const MatrixXd posterior = test::calcInverse(information);
   EXPECT_LT((100.0 * posterior - covariance).norm(), 1e-9);
   EXPECT_LT((10.0 * posterior * said.rows.transpose() * said.values - mean).norm(), 1e-9);
+}
+
+/// A normal likelihood of two parameters that the bounds of the first cut off; moments by a grid of it.
+TEST(Likelihood, OfAUniformPriorIsWhatTheBoundsCutOff) {
+  Setting setting;
+  setting.prior.uniform = {0, 1};
+  const Vector2d mean(0.7, 0.1);  // half-widths
+  const Matrix2d covariance = (Matrix2d() << 0.25, 0.02, 0.02, 0.0025).finished();
+  const double slope = covariance(1, 0) / covariance(0, 0);
+  double sum = 0.0, first = 0.0, second = 0.0;
+  for (int i = 0; i <= 20000; ++i) {
+    const double x = -1.0 + 1e-4 * i, off = x - mean[0];
+    const double density = std::exp(-0.5 * off * off / covariance(0, 0));
+    sum += density;
+    first += density * x;
+    second += density * x * x;
+  }
+  first /= sum;
+  const double variance = second / sum - first * first;
+  const double rest = covariance(1, 1) - slope * covariance(0, 1);  // of the second, given the first
+  const Vector2d cut_mean(first, mean[1] + slope * (first - mean[0]));
+  const Matrix2d cut =
+      (Matrix2d() << variance, slope * variance, slope * variance, rest + slope * slope * variance)
+          .finished();
+  const tracking::Measurement said =
+      makeTrackMeasurement(makeEstimate(10.0 * cut_mean, 100.0 * cut), setting.space, setting.prior);
+  ASSERT_EQ(said.rows.rows(), 2);
+  const MatrixXd found = test::calcInverse(said.rows.transpose() * said.rows);
+  EXPECT_LT((found - covariance).norm(), 1e-4);
+  EXPECT_LT((found * said.rows.transpose() * said.values - mean).norm(), 1e-4);
+  Estimate refined = makeEstimate(10.0 * cut_mean, 100.0 * cut);
+  refined.method = EstimationMethod::kRefined;  // its prior is normal
+  const tracking::Measurement normal = makeTrackMeasurement(refined, setting.space, setting.prior);
+  const MatrixXd information = normal.rows.transpose() * normal.rows + 3.0 * Matrix2d::Identity();
+  EXPECT_LT((test::calcInverse(information) - cut).norm(), 1e-9);
 }
 
 TEST(Likelihood, HasNoRowWhereNothingIsSaid) {
