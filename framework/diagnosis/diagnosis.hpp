@@ -60,8 +60,7 @@ struct Diagnosis {
   /// Parameters whose best value before any term is within a hundredth of their bounds' width from a bound;
   /// none where the noise explains the recordings.
   std::vector<std::string> listAtBounds() const;
-  /// Parameters of found terms that fit best beyond their bounds (findBeyondBounds): where the search for a
-  /// scale ended.
+  /// Parameters of found terms that fit best beyond their bounds (findBeyondBounds).
   std::vector<std::string> listTermsAtBounds() const;
 
   /// Whether something is left unexplained, or a random force explains more than the terms that were found.

@@ -17,13 +17,11 @@ namespace {
 /// So often bounds fall at most: by 15625 where the reach is 5.
 constexpr int kFalls = 6;
 
-/// chi-square that a fall of the bounds may change where recordings do not tell: a weight of e^.5. Where
-/// bounds end within that matters little: at 1e-4, 5e-4 and 1e-3 rad/s for a machine's 1e-3, 57, 56 and 56 of
-/// 60 intervals of 95 % held (bench/README.md, "Dry friction").
+/// chi-square that a fall of the bounds may change where recordings do not tell. It matters little: with
+/// bounds at 1e-4, 5e-4 and 1e-3 rad/s 57, 56 and 56 of 60 intervals held (bench/README.md, "Dry friction").
 constexpr double kFlat = 1.0;
 
-/// Whether a scale lies so far above `lower`, by the linear model at the fit, that nothing is to be found
-/// there. noise: its variance, in that which is stated.
+/// Whether a scale lies far above `lower` by the linear model. noise: its variance, in that which is stated.
 bool isExcluded(const LinearizedRecordings& linear, Index scale, double above, double noise) {
   const Index u = linear.jacobian.cols();
   const ScoreTest test(linear.residual, linear.jacobian(Eigen::all, listOthers(u, scale, 1)),
@@ -50,7 +48,7 @@ struct Descent {
   }
 };
 
-/// The other parameters follow as the scale falls. Below the best of it they tell how flat it is there.
+/// The other parameters follow as the scale falls.
 Descent descend(const RecordingsProblem& problem, Index scale, double lower, double reach, double noise,
                 const RecordingFit& fit) {
   Descent descent{lower, {fit}};

@@ -42,7 +42,7 @@ std::optional<Beginning> readBeginning(const std::vector<FeatureInfo>& infos, co
   return t.size() == kPoints ? std::optional<Beginning>(extrapolate(t, y)) : std::nullopt;
 }
 
-/// Of the first output that shows it; one whose sensor is not known says nothing.
+/// By the first output that shows it and whose sensor is known.
 std::optional<double> readState(const std::vector<StartReading>& readings,
                                 const std::vector<FeatureInfo>& infos, const VectorXd& features) {
   for (const StartReading& reading : readings) {

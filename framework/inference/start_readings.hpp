@@ -19,8 +19,8 @@ struct StartReading {
   double read(double value, double slope) const { return (of_slope ? slope : value - offset) / gain; }
 };
 
-/// Those of a state, in the order of the outputs, slopes last; none of a state of first order. numbers: of
-/// the model, at a point of its box. Throws SimulationFailure for a gain or an offset that is not finite.
+/// Those of a state, slopes last; none of a state of first order.
+/// Throws SimulationFailure for a gain or an offset that is not finite.
 std::vector<StartReading> listReadings(const ModelSpec& model, const StartState& state,
                                        ModelNumbers& numbers);
 

@@ -131,8 +131,7 @@ class RecordingsProblem {
   /// recording.
   LinearizedRecordings linearize(const Eigen::VectorXd& point) const;
 
-  /// Searches side by side from points (u x n), the best of which is kept. held: a parameter that stays as it
-  /// is there; -1: none does.
+  /// Searches side by side from points (u x n), the best of which is kept. held: a parameter that stays.
   RecordingFit fit(const Eigen::MatrixXd& starts, Eigen::Index held = -1) const;
 
  private:

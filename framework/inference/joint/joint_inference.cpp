@@ -55,8 +55,7 @@ void leaveClockBounds(const PosteriorProblem& problem, const std::vector<Explain
   }
 }
 
-/// The machine's parameters where a recording fits best that noise does not explain; else empty. Others lack
-/// the same.
+/// The machine's parameters at the best fit that noise does not explain; else empty.
 VectorXd findLead(const ExplainedRecording& first, Index shared) {
   const SimulatorFit* fit = findFit(first.inferred);
   const bool leads = fit != nullptr && fit->isSimulated() && !fit->isPlausible();

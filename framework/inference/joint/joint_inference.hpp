@@ -95,8 +95,8 @@ class JointInferrer {
 
   /// What becomes of a fit that noise does not explain: it is the answer, or where a further search begins.
   enum class Misfits { kAnswers, kStarts };
-  /// Each alone (explainRecording). kStarts: where noise does not explain the first, others begin at its
-  /// best.
+  /// Each alone (explainRecording). kStarts: others begin at the best of a first one
+  /// that noise does not explain.
   std::vector<ExplainedRecording> explainAlone(const std::vector<Recording>& recordings,
                                                Misfits misfits = Misfits::kAnswers) const;
 

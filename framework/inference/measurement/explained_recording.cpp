@@ -100,7 +100,7 @@ class Explaining {
   const InferredMeasurement& getInferred() const { return explained_.inferred; }
   InferredMeasurement& upd() { return explained_.inferred; }
 
-  /// Where other recordings of the machine lead (u x 1), or none.
+  /// The place to which other recordings lead (u x 1), or none.
   MatrixXd listGiven() const {
     if (lead_.size() == 0) {
       return {};

@@ -52,8 +52,8 @@ struct ExplainedRecording {
 ///   without what every other sample is off by (findAlternation)
 ///   a clock with faults (findClockFaults)
 /// Else the simple fault that explains a gross misfit, and what speaks against the model, are named. What is
-/// unknown of the excitation is supposed (makeOwnSimulator). found: readFeatures() of the table. lead: the
-/// machine's parameters, to search from as well; empty: none.
+/// unknown of the excitation is supposed (makeOwnSimulator). found: readFeatures() of the table. lead:
+/// the machine's parameters, to search from as well.
 ExplainedRecording explainRecording(const RecordingSetup& setup, AvailableFeatures found, const Table& table,
                                     std::optional<double> start, const Eigen::VectorXd& known,
                                     const SimulatorPosteriorOptions& options,
