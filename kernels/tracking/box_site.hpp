@@ -12,10 +12,9 @@ struct BoxSite {
 };
 
 /// Of an estimate in half-widths of its bounds. Its mean and variance are those of a normal likelihood that
-/// the bounds -1 and 1 cut off. What has to be taken out of them to leave that likelihood is found by
-/// Newton's method from its natural parameters (the site of expectation propagation, Minka 2001). Nothing is
-/// where the bounds are eight standard deviations away. All is where no likelihood explains so large a
-/// variance. Cost: some 10 us.
+/// the bounds -1 and 1 cut off. Newton's method finds the likelihood from its natural parameters; the rest is
+/// the site (expectation propagation, Minka 2001). It is nothing where the bounds are eight standard
+/// deviations away. It is all where no likelihood explains so large a variance. Cost: some 10 us.
 BoxSite calcBoxSite(Eigen::Index parameter, double mean, double variance);
 
 }  // namespace twinmap::tracking

@@ -15,8 +15,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// In coordinates in which the belief before is of mean 0 and unit variance: the information that is left of
-/// the one after it, by eigenvectors, and how far each pulls.
+/// The information that is left of the belief after a measurement, by eigenvectors, and how far each pulls.
+/// In coordinates in which the belief before is of mean 0 and unit variance.
 struct Gained {
   VectorXd information, pulls;  // p
   MatrixXd vectors;             // p x p

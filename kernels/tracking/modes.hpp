@@ -6,9 +6,9 @@ namespace twinmap::tracking {
 
 /// The likelihood that takes one normal belief of p parameters to another, as rows of unit noise. Directions
 /// in which it has hardly more information than the first belief have none: the sd would be above .9 of that.
-/// `uniform`: parameters that were not normal before but uniform from -1 to 1, where `before` has no
-/// correlation. What the bounds have made of the second belief (calcBoxSite()) is taken out of it, in the
-/// place of the first.
+/// Some parameters may have been uniform before, from -1 to 1, where the first belief has no correlation.
+/// What the bounds have made of the second one (calcBoxSite()) is then taken out of it, in the place of the
+/// first.
 Measurement makeLikelihood(const Belief& before, const Belief& after,
                            const std::vector<Eigen::Index>& uniform = {});
 
