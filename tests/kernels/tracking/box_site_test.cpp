@@ -8,12 +8,12 @@
 namespace twinmap::tracking {
 namespace {
 
-struct Moments {
+struct CutMoments {
   double mean, variance;
 };
 
 /// Of a normal distribution within [-1, 1], by a fine grid.
-Moments cut(double mean, double stddev) {
+CutMoments cut(double mean, double stddev) {
   double sum = 0.0, first = 0.0, second = 0.0;
   for (int i = 0; i <= 20000; ++i) {
     const double x = -1.0 + 1e-4 * i, z = (x - mean) / stddev;
@@ -29,7 +29,7 @@ Moments cut(double mean, double stddev) {
 TEST(BoxSite, LeavesTheLikelihoodThatBoundsCutOff) {
   for (const double stddev : {0.05, 0.2, 0.5, 1.0}) {
     for (const double mean : {-0.9, 0.0, 0.4, 1.05}) {
-      const Moments moments = cut(mean, stddev);
+      const CutMoments moments = cut(mean, stddev);
       const BoxSite site = calcBoxSite(0, moments.mean, moments.variance);
       const double precision = 1.0 / moments.variance - site.precision;
       EXPECT_NEAR(precision * stddev * stddev, 1.0, 2e-3) << mean << " " << stddev;
@@ -55,7 +55,7 @@ TEST(BoxSite, LetsManyMeasurementsAddUpToTheTruth) {
   std::normal_distribution<double> normal(kTruth, kStddev);
   double precision = 0.0, shift = 0.0, normal_precision = 0.0, normal_shift = 0.0;
   for (int i = 0; i < kCount; ++i) {
-    const Moments moments = cut(normal(random), kStddev);
+    const CutMoments moments = cut(normal(random), kStddev);
     const BoxSite site = calcBoxSite(0, moments.mean, moments.variance);
     precision += 1.0 / moments.variance - site.precision;
     shift += moments.mean / moments.variance - site.shift;

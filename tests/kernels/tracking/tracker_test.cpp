@@ -242,8 +242,9 @@ Belief waitForYears(double rate, double prior, bool comes) {
   constexpr double kYears = 1e6;  // steps: the walk's sd is five times the bounds' half-width by then
   if (comes) {
     for (int i = 1; i <= 500; ++i) {
-      Measurement empty{30.0 + i * kYears / 500.0, MatrixXd(0, 1), VectorXd(0),
-                        VectorXd::Constant(1, std::numeric_limits<double>::infinity()), VectorXd()};
+      Measurement empty{30.0 + i * kYears / 500.0, Eigen::MatrixXd(0, 1), Eigen::VectorXd(0),
+                        Eigen::VectorXd::Constant(1, std::numeric_limits<double>::infinity()),
+                        Eigen::VectorXd()};
       tracker.advance(empty);
     }
   } else {
