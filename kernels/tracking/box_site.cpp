@@ -12,7 +12,7 @@ constexpr double kReach = 24.0;  // of an exponential distribution, which a boun
 constexpr int kIntervals = 128;  // of Simpson's rule: a fifth of a standard deviation each
 
 /// Moments 1 to 4 of the density exp(tilt u - curvature u^2 / 2) between two places.
-std::array<double, 5> calcMoments(double tilt, double curvature, double lower, double upper) {
+std::array<double, 5> calcCutMoments(double tilt, double curvature, double lower, double upper) {
   const double step = (upper - lower) / kIntervals;
   const auto calcLog = [&](double u) { return u * (tilt - 0.5 * curvature * u); };
   const double largest = calcLog(std::min(std::max(tilt / curvature, lower), upper));
@@ -45,7 +45,7 @@ BoxSite calcBoxSite(Eigen::Index parameter, double mean, double variance) {
   const double lower = std::max(to_lower, -kReach), upper = std::min(to_upper, kReach);
   double tilt = 0.0, curvature = 1.0;
   for (int i = 0; i < kMost; ++i) {
-    const std::array<double, 5> m = calcMoments(tilt, curvature, lower, upper);
+    const std::array<double, 5> m = calcCutMoments(tilt, curvature, lower, upper);
     const double by_tilt = m[2] - m[1] * m[1], by_both = m[3] - m[1] * m[2],
                  by_curvature = m[4] - m[2] * m[2];
     const double of_mean = -m[1], of_square = 1.0 - m[2];

@@ -117,7 +117,7 @@ static void whiten(const twinmap_result *result, double *whitened)
 }
 
 /* Moments 1 to 4 of the density exp(tilt u - curvature u^2 / 2) between two places, by Simpson's rule. */
-static void calc_moments(double tilt, double curvature, double lower, double upper, double *moments)
+static void calc_cut_moments(double tilt, double curvature, double lower, double upper, double *moments)
 {
   enum { INTERVALS = 128 };
   const double step = (upper - lower) / INTERVALS;
@@ -154,7 +154,7 @@ static void calc_box_site(double mean, double variance, double *precision, doubl
   upper = upper > reach ? reach : upper;
   for (i = 0; i < 20; ++i) {
     double by_tilt, by_both, by_curvature, of_square, determinant, more_tilt, more_curvature, size;
-    calc_moments(tilt, curvature, lower, upper, m);
+    calc_cut_moments(tilt, curvature, lower, upper, m);
     by_tilt = m[2] - m[1] * m[1];
     by_both = m[3] - m[1] * m[2];
     by_curvature = m[4] - m[2] * m[2];
