@@ -35,7 +35,7 @@ std::array<double, 5> calcCutMoments(double tilt, double curvature, double lower
 
 BoxSite calcBoxSite(Eigen::Index parameter, double mean, double variance) {
   constexpr int kMost = 20;
-  constexpr double kTolerance = 1e-13, kLongest = 1.0;
+  constexpr double kTolerance = 1e-13, kLongest = 1.0, kLeast = 0.25;
   const double stddev = std::sqrt(variance);
   const double to_lower = (-1.0 - mean) / stddev, to_upper = (1.0 - mean) / stddev;
   if (!(to_lower < 0.0 && to_upper > 0.0) || (to_lower < -kFar && to_upper > kFar)) {
@@ -50,18 +50,17 @@ BoxSite calcBoxSite(Eigen::Index parameter, double mean, double variance) {
                  by_curvature = m[4] - m[2] * m[2];
     const double of_mean = -m[1], of_square = 1.0 - m[2];
     const double determinant = by_tilt * by_curvature - by_both * by_both;
-    double more_tilt = (of_mean * by_curvature - of_square * by_both) / determinant;
-    double more_curvature = -2.0 * (of_square * by_tilt - of_mean * by_both) / determinant;
+    if (!(determinant > 0.0)) {  // by rounding
+      break;
+    }
+    const double more_tilt = (of_mean * by_curvature - of_square * by_both) / determinant;
+    const double more_curvature = -2.0 * (of_square * by_tilt - of_mean * by_both) / determinant;
     const double size = std::max(std::abs(more_tilt), std::abs(more_curvature));
-    if (size > kLongest) {
-      more_tilt *= kLongest / size;
-      more_curvature *= kLongest / size;
-    }
-    tilt += more_tilt;
-    curvature += more_curvature;
-    if (!(curvature > 0.0)) {
-      return {parameter, 1.0 / variance, mean / variance};
-    }
+    const double least = curvature * kLeast - curvature;  // so that it stays positive
+    double share = size > kLongest ? kLongest / size : 1.0;
+    share = share * more_curvature < least ? least / more_curvature : share;
+    tilt += share * more_tilt;
+    curvature += share * more_curvature;
     if (size < kTolerance) {
       break;
     }

@@ -153,27 +153,25 @@ static void calc_box_site(double mean, double variance, double *precision, doubl
   lower = lower < -reach ? -reach : lower;
   upper = upper > reach ? reach : upper;
   for (i = 0; i < 20; ++i) {
-    double by_tilt, by_both, by_curvature, of_square, determinant, more_tilt, more_curvature, size;
+    double by_tilt, by_both, by_curvature, of_square, determinant, more_tilt, more_curvature, size, least,
+        share;
     calc_cut_moments(tilt, curvature, lower, upper, m);
     by_tilt = m[2] - m[1] * m[1];
     by_both = m[3] - m[1] * m[2];
     by_curvature = m[4] - m[2] * m[2];
     of_square = 1.0 - m[2];
     determinant = by_tilt * by_curvature - by_both * by_both;
+    if (!(determinant > 0.0)) { /* by rounding */
+      break;
+    }
     more_tilt = (-m[1] * by_curvature - of_square * by_both) / determinant;
     more_curvature = -2.0 * (of_square * by_tilt + m[1] * by_both) / determinant;
     size = fabs(more_tilt) > fabs(more_curvature) ? fabs(more_tilt) : fabs(more_curvature);
-    if (size > 1.0) {
-      more_tilt *= 1.0 / size;
-      more_curvature *= 1.0 / size;
-    }
-    tilt += more_tilt;
-    curvature += more_curvature;
-    if (!(curvature > 0.0)) {
-      *precision = 1.0 / variance;
-      *shift = mean / variance;
-      return;
-    }
+    least = curvature * 0.25 - curvature; /* so that it stays positive */
+    share = size > 1.0 ? 1.0 / size : 1.0;
+    share = share * more_curvature < least ? least / more_curvature : share;
+    tilt += share * more_tilt;
+    curvature += share * more_curvature;
     if (size < tolerance) {
       break;
     }
