@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/tracking/log_product.hpp"
+
 namespace twinmap::tracking {
 
 using Eigen::Index;
@@ -92,7 +94,8 @@ double update(const StateRows& rows, Belief& belief, std::vector<Innovation>* in
   constexpr double kLogTwoPi = 1.8378770664093453;
   const Index n = belief.mean.size(), k = rows.values.size();
   VectorXd gain(n);
-  double loss = 0.0;
+  double loss = kLogTwoPi * static_cast<double>(k);
+  LogProduct variances;
   for (Index i = 0; i < k; ++i) {
     const auto h = rows.rows.col(i);
     gain.noalias() = belief.covariance * h;
@@ -101,7 +104,8 @@ double update(const StateRows& rows, Belief& belief, std::vector<Innovation>* in
     for (Index c = 0; c < n; ++c) {
       belief.covariance.col(c) -= (gain[c] / variance) * gain;
     }
-    loss += kLogTwoPi + std::log(variance) + value * value / variance;
+    loss += value * value / variance;
+    variances.multiply(variance);
     if (innovations != nullptr) {
       Innovation& innovation = (*innovations)[static_cast<std::size_t>(i)];
       innovation.value = value;
@@ -109,7 +113,7 @@ double update(const StateRows& rows, Belief& belief, std::vector<Innovation>* in
       innovation.gain = gain / variance;
     }
   }
-  return -0.5 * loss;
+  return -0.5 * (loss + variances.calc());
 }
 
 }  // namespace twinmap::tracking

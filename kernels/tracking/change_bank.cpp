@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "kernels/tracking/log_product.hpp"
+
 namespace twinmap::tracking {
 
 using Eigen::Index;
@@ -70,8 +72,8 @@ void supposeChanges(const Model& model, double dt, double time, const VectorXd& 
 namespace {
 
 /// A change of a measurement ago may be of any size: its prior is as wide as that one says at least.
-void widen(const ChangeEvidence& evidence, Supposed& change) {
-  VectorXd signature = change.signature;
+void widen(const ChangeEvidence& evidence, Supposed& change, VectorXd& signature) {
+  signature = change.signature;
   double descent = 0.0, information = 0.0;
   for (std::size_t i = 0; i < evidence.innovations.size(); ++i) {
     const Innovation& innovation = evidence.innovations[i];
@@ -86,23 +88,46 @@ void widen(const ChangeEvidence& evidence, Supposed& change) {
   }
 }
 
+/// What a measurement is without any change: the sum of squares of its innovations, over their variances, the
+/// logarithm of these, and of the density, over that of good ones.
+struct Unchanged {
+  double chi_square = 0.0, log_variances = 0.0, log_density = 0.0;
+};
+
+Unchanged describeUnchanged(const ChangeEvidence& evidence) {
+  Unchanged unchanged;
+  LogProduct variances;
+  for (const Innovation& innovation : evidence.innovations) {
+    unchanged.chi_square += innovation.value * innovation.value / innovation.variance;
+    variances.multiply(innovation.variance);
+  }
+  unchanged.log_variances = variances.calc();
+  unchanged.log_density = std::max(0.0, evidence.log_bad) + std::log1p(std::exp(-std::abs(evidence.log_bad)));
+  return unchanged;
+}
+
 /// One supposed change, a measurement later.
-void weigh(const ChangeEvidence& evidence, double without, Supposed& change) {
-  double size = change.size, variance = change.variance, log_good = 0.0;
-  VectorXd signature = change.signature;
+void weigh(const ChangeEvidence& evidence, const Unchanged& unchanged, Supposed& change,
+           VectorXd& signature) {
+  double size = change.size, variance = change.variance, chi_square = 0.0;
+  LogProduct variances;
+  signature = change.signature;
   for (std::size_t i = 0; i < evidence.innovations.size(); ++i) {
     const Innovation& innovation = evidence.innovations[i];
     const double seen = evidence.rows.rows.col(static_cast<Index>(i)).dot(signature);
     const double with = innovation.variance + seen * seen * variance;
-    const double off = innovation.value - seen * size;
-    log_good += 0.5 * (innovation.value * innovation.value / innovation.variance - off * off / with -
-                       std::log(with / innovation.variance));
-    size += variance * seen * off / with;
-    variance -= variance * seen * variance * seen / with;
+    const double off = innovation.value - seen * size, share = off / with;
+    chi_square += off * share;
+    variances.multiply(with);
+    size += variance * seen * share;
+    variance *= innovation.variance / with;
     signature -= seen * innovation.gain;
   }
+  const double log_good =
+      0.5 * (unchanged.chi_square - chi_square - (variances.calc() - unchanged.log_variances));
   const double larger = std::max(log_good, evidence.log_bad);
-  change.log_ratio += larger + std::log1p(std::exp(std::min(log_good, evidence.log_bad) - larger)) - without;
+  change.log_ratio +=
+      larger + std::log1p(std::exp(std::min(log_good, evidence.log_bad) - larger)) - unchanged.log_density;
   if (log_good > evidence.log_bad) {
     change.size = size;
     change.variance = variance;
@@ -118,13 +143,14 @@ void weighChanges(const ChangeEvidence& evidence, ChangeBank& bank) {
   // log(2): with 20, one in twenty bad measurements raise half as many alarms again at rates of .3, and steps
   // are found no sooner (docs/benchmarks/tracking.md)
   constexpr double kAlone = 0.7;
-  const double without = std::max(0.0, evidence.log_bad) + std::log1p(std::exp(-std::abs(evidence.log_bad)));
+  const Unchanged unchanged = describeUnchanged(evidence);
+  VectorXd signature(evidence.rows.rows.rows());
   for (Supposed& change : bank.changes) {
     const bool is_new = &bank.changes.back() - &change < evidence.parameters;
     if (is_new) {
-      widen(evidence, change);
+      widen(evidence, change, signature);
     }
-    weigh(evidence, without, change);
+    weigh(evidence, unchanged, change, signature);
     if (is_new) {  // one measurement alone may be bad in any way: it counts for no more than that is rare
       change.log_ratio = std::min(change.log_ratio, kAlone);
     }

@@ -331,10 +331,20 @@ static void predict(double dt, const double *growth, belief_t *belief)
   }
 }
 
+/* The logarithm of a product of positive factors, by one logarithm: sum + log(product). */
+static void multiply_log(double factor, double *product, double *sum)
+{
+  *product *= factor;
+  if (!(*product < 1e150 && *product > 1.0 / 1e150)) {
+    *sum += log(*product);
+    *product = 1.0;
+  }
+}
+
 /* By one value after another; log of their density. keeps: innovations and gains are kept. */
 static double update(twinmap_track *track, belief_t *belief, int keeps)
 {
-  double gain[TWINMAP_TRACK_STATES], loss = 0.0;
+  double gain[TWINMAP_TRACK_STATES], loss = 1.8378770664093453 * track->rows, product = 1.0, sum = 0.0;
   int i, a, b;
   for (i = 0; i < track->rows; ++i) {
     const double *row = track->row[i];
@@ -350,7 +360,8 @@ static double update(twinmap_track *track, belief_t *belief, int keeps)
         belief->covariance[a * N + b] -= gain[a] / variance * gain[b];
       }
     }
-    loss += 1.8378770664093453 + log(variance) + value * value / variance;
+    loss += value * value / variance;
+    multiply_log(variance, &product, &sum);
     if (keeps) {
       track->innovation[i] = value;
       track->variance[i] = variance;
@@ -359,7 +370,7 @@ static double update(twinmap_track *track, belief_t *belief, int keeps)
       }
     }
   }
-  return -0.5 * loss;
+  return -0.5 * (loss + (sum + log(product)));
 }
 
 /* Rates of walks. */
@@ -695,22 +706,27 @@ static double add_logs(double a, double b)
   return larger + log1p(exp((a > b ? b : a) - larger));
 }
 
-static void weigh_change(const twinmap_track *track, double log_bad, int is_used, supposed_t *change)
+/* unchanged: chi-square of the measurement without a change, and the logarithm of its variances. */
+static void weigh_change(const twinmap_track *track, const double *unchanged, double log_bad, int is_used,
+                         supposed_t *change)
 {
-  double size = change->size, variance = change->variance, log_good = 0.0, signature[TWINMAP_TRACK_STATES];
+  double size = change->size, variance = change->variance, signature[TWINMAP_TRACK_STATES];
+  double chi_square = 0.0, product = 1.0, sum = 0.0, log_good;
   int i, a;
   memcpy(signature, change->signature, sizeof signature);
   for (i = 0; i < track->rows; ++i) {
     const double seen = dot(track->row[i], signature, N);
-    const double innovation = track->innovation[i], without = track->variance[i];
-    const double with = without + seen * seen * variance, off = innovation - seen * size;
-    log_good += 0.5 * (innovation * innovation / without - off * off / with - log(with / without));
-    size += variance * seen * off / with;
-    variance -= variance * seen * variance * seen / with;
+    const double with = track->variance[i] + seen * seen * variance;
+    const double off = track->innovation[i] - seen * size, share = off / with;
+    chi_square += off * share;
+    multiply_log(with, &product, &sum);
+    size += variance * seen * share;
+    variance *= track->variance[i] / with;
     for (a = 0; a < N; ++a) {
       signature[a] -= seen * track->gain[i][a];
     }
   }
+  log_good = 0.5 * (unchanged[0] - chi_square - (sum + log(product) - unchanged[1]));
   change->log_ratio += add_logs(log_good, log_bad) - add_logs(0.0, log_bad);
   if (log_good > log_bad) {
     change->size = size;
@@ -723,7 +739,13 @@ static void weigh_change(const twinmap_track *track, double log_bad, int is_used
 
 static void weigh_changes(twinmap_track *track, double log_bad, int is_used)
 {
+  double unchanged[2] = {0.0, 0.0}, product = 1.0, sum = 0.0;
   int m, j;
+  for (m = 0; m < track->rows; ++m) {
+    unchanged[0] += track->innovation[m] * track->innovation[m] / track->variance[m];
+    multiply_log(track->variance[m], &product, &sum);
+  }
+  unchanged[1] = sum + log(product);
   for (m = 0; m < track->supposed; ++m) {
     for (j = 0; j < P; ++j) {
       supposed_t *change = &track->changes[m][j];
@@ -731,7 +753,7 @@ static void weigh_changes(twinmap_track *track, double log_bad, int is_used)
       if (is_new) {
         widen_change(track, change);
       }
-      weigh_change(track, log_bad, is_used, change);
+      weigh_change(track, unchanged, log_bad, is_used, change);
       if (is_new && change->log_ratio > 0.7) {
         change->log_ratio = 0.7; /* one measurement alone may be bad in any way */
       }
