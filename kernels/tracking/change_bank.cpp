@@ -88,10 +88,10 @@ void widen(const ChangeEvidence& evidence, Supposed& change, VectorXd& signature
   }
 }
 
-/// What a measurement is without any change: the sum of squares of its innovations, over their variances, the
-/// logarithm of these, and of the density, over that of good ones.
+/// What a measurement is without any change.
 struct Unchanged {
-  double chi_square = 0.0, log_variances = 0.0, log_density = 0.0;
+  double chi_square = 0.0, log_variances = 0.0;  ///< of its innovations
+  double log_density = 0.0;                      ///< with the bad ones, over that of a good one
 };
 
 Unchanged describeUnchanged(const ChangeEvidence& evidence) {
