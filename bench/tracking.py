@@ -69,7 +69,6 @@ EXPERIMENTS = {
     "end_stops": "mechanisms/end_stops",
     "cubic_chain": "mechanisms/cubic_chain",
     "spinning_top": "mechanisms/spinning_top",
-    "servo_axis": "mechanisms/servo_axis",
 }
 
 
