@@ -326,7 +326,7 @@ machines whose parameters are known. Bold: outside of the 99 % band. What follow
 - A map errs alike in all measurements of one machine. Until its error without noise was added to the belief, filtered bands of constants by
   the estimator alone held .54 (stick-slip), .72 (cubic chain), .84 (two beams) and .85 (double pendulum) after 120 measurements.
 - A posterior within bounds is what they cut off of the likelihood. While a normal distribution of the bounds' variance was divided out
-  instead, the refined top's held .75, for half of its estimates are posteriors near the bounds of `c_lean`.
+  instead, the refined top's held .75, for of some machines half of the estimates are posteriors near the bounds of `c_lean`.
 - Alarms are held against terms that the model lacks since the last table was made. Of 24 lives each that lack friction, hardening and drag 0
   of 72 are named, and each has the term among its rivals. Of wear 28 of 32, 24 of 24 and 23 of 24 are named.
 - A rate that is unknown has the prior `sqrt(r) exp(-r / 2)` over the logarithm of r, the walk's sd over a measurement's. A constant

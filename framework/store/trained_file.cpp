@@ -198,7 +198,8 @@ TrainedFile readTrainedFile(const std::filesystem::path& path, Hdf5Seal seal) {
   if (file.contains(kSharedError)) {
     stored.model.shared_error = file.readVector(kSharedError);
     if (stored.model.shared_error.size() != static_cast<Index>(stored.parameters.size())) {
-      throw std::runtime_error(path.string() + ": " + kSharedError + " has not one number per parameter");
+      throw std::runtime_error(path.string() + ": " + kSharedError +
+                               " must have a number for each parameter");
     }
   }
   if (file.contains(std::string(kReduction) + "/center")) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/estimation/interval_factor.hpp"
 #include "kernels/linalg/order.hpp"
 
 namespace twinmap {
@@ -33,14 +34,14 @@ double calcMedianOf(const Records& records, const Number& number) {
 
 /// Without those that lie more than five deviations from the median of a parameter.
 Records leaveApart(Records records) {
-  constexpr double kApart = 5.0, kStddevsOfNormal = 1.4826;  // of the median deviation
+  constexpr double kApart = 5.0;  // standard deviations
   if (records.size() < 3) {
     return records;
   }
   for (Index j = 0; j < records.front()->estimate.size(); ++j) {
     const double middle = calcMedianOf(records, [&](const TrackRecord& one) { return one.estimate[j]; });
     const auto calcOff = [&](const TrackRecord& one) { return std::abs(one.estimate[j] - middle); };
-    const double scatter = kStddevsOfNormal * calcMedianOf(records, calcOff);
+    const double scatter = calcMedianOf(records, calcOff) / kNormal50;
     records.erase(std::remove_if(records.begin(), records.end(),
                                  [&](const TrackRecord* one) {
                                    const double own = one->measurement.variances[j];

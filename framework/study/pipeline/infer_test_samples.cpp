@@ -200,10 +200,10 @@ InferredTests inferTestSamples(const Study& study, const PreparedData& data, Tra
   TrustModel* trust = map.online.trust ? &*map.online.trust : nullptr;
   const bool refines = shouldRefine(study.experiment.refine, study.simulator, study.noise);
   tests.by_estimator = timeStage("infer the test samples", tests.notes, [&] {
+    map.online.shared_error = calcSharedError(study, data, map);
     tests.inferred = refines ? inferAll(map.online, test) : std::vector<InferredMeasurement>();
     return predict(test, map, tests.inferred);
   });
-  map.online.shared_error = calcSharedError(study, data, map);
   if (trust != nullptr) {
     trust->coverage =
         recordCoverage(summarizeMap(map.name, parameters, test.parameters, tests.by_estimator, {}));

@@ -13,9 +13,8 @@ using Eigen::VectorXd;
 
 /// The standard deviation of the normal distribution that holds 95 % of the sizes in its 95 % interval.
 double calcSpread(VectorXd sizes) {
-  const Index place = std::min<Index>(sizes.size() * 95 / 100, sizes.size() - 1);
-  std::nth_element(sizes.begin(), sizes.begin() + place, sizes.end());
-  return sizes[place] / kNormal95;
+  std::sort(sizes.begin(), sizes.end());
+  return calcConformalQuantile(sizes, 0.95) / kNormal95;
 }
 
 }  // namespace
