@@ -310,7 +310,7 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
 void testModel(const std::string& experiment_file, const std::vector<Recording>& recordings,
                const std::vector<std::string>& known, JointInference& inferred) {
   try {
-    const InferenceSource source(experiment_file);
+    const InferenceSource source = readAllTrials(experiment_file);
     const ExperimentSpec& experiment = source.getExperiment();
     testModel(experiment, readRecordings(experiment, recordings, parseKnownValues(known)), inferred);
   } catch (const ExperimentError&) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr const char* kTrials = "trials";
 constexpr const char* kTrial = "trial";
+constexpr const char* kSweep = "sweep";
 constexpr const char* kTransform = "transform";
 constexpr const char* kDescription = "description";
 
@@ -68,7 +69,7 @@ const YamlNode* findChoice(const YamlNode& root) {
   if (const YamlNode* chosen = root.find(kTrial)) {
     return chosen;
   }
-  const YamlNode* sweep = root.find("sweep");
+  const YamlNode* sweep = root.find(kSweep);
   const YamlNode* over = sweep != nullptr ? sweep->find("over") : nullptr;
   const YamlNode* swept = over != nullptr ? over->find(kTrial) : nullptr;
   return swept != nullptr && !swept->items.empty() ? &swept->items.front() : nullptr;
@@ -131,6 +132,14 @@ YamlNode selectTrial(const YamlNode& root) {
         "must be one of the trials " + listNames(names) + suggestName(chosen->scalar, names));
   }
   return std::move(trials[static_cast<std::size_t>(found - names.begin())].tree);
+}
+
+YamlNode selectAllTrials(YamlNode root) {
+  if (hasTrials(root)) {
+    eraseEntry(root, kTrial);
+    eraseEntry(root, kSweep);
+  }
+  return root;
 }
 
 }  // namespace twinmap

@@ -30,4 +30,7 @@ YamlNode joinTrials(YamlNode shared, const std::vector<Trial>& trials);
 /// unknown one.
 YamlNode selectTrial(const YamlNode& root);
 
+/// The tree of all trials, whichever is chosen: what recordings that name their trials are of.
+YamlNode selectAllTrials(YamlNode root);
+
 }  // namespace twinmap

@@ -5,6 +5,7 @@
 #include "framework/data/measurement/files/table.hpp"
 #include "framework/data/measurement/signal_experiment.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/measurement/direct_inference.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 
@@ -60,6 +61,10 @@ std::unique_ptr<MeasurementInference> InferenceSource::makeSession(const Session
     return std::make_unique<MeasurementSession>(*trained_, options);
   }
   return makeDirect(*reader_, options);
+}
+
+InferenceSource readAllTrials(const std::filesystem::path& experiment) {
+  return InferenceSource(readExperimentWithSignals(selectAllTrials(loadExperimentTree(experiment.string()))));
 }
 
 }  // namespace twinmap

@@ -33,4 +33,7 @@ class InferenceSource {
   std::optional<MeasurementReader> reader_;  // of an experiment alone
 };
 
+/// Of an experiment file by itself. Of one with trials all of them, whichever `trial` chooses.
+InferenceSource readAllTrials(const std::filesystem::path& experiment);
+
 }  // namespace twinmap

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <random>
 
@@ -139,6 +140,35 @@ TEST(JointFaults, ColourWidensTheIntervals) {
   EXPECT_EQ(joint.listStatuses(), Statuses{"noise_coloured"});
   joint.expectRight();
   EXPECT_GT(joint.inferred.joint.stddev[1], 1.5 * clean.inferred.joint.stddev[1]);
+}
+
+// With the second recording's own initial state, not with that of the trial that the file chooses.
+TEST(JointFaults, RecordingsThatNameTheirTrialsAreOfTheseWhicheverIsChosen) {
+  const std::string file = testing::TempDir() + "trials.yaml";
+  std::ofstream(file) << R"(
+name: oscillator
+parameters: {k: {bounds: [30, 80], unit: N/m}, d: {bounds: [0, 2], unit: N s/m}}
+system:
+  bodies: {cart: {mass: 1, joint: {type: slider, coordinates: [x]}}}
+  springs: [{coordinate: x, stiffness: k}]
+  dampers: [{coordinate: x, damping: d}]
+trial: far
+trials:
+  far: {initial: {coordinates: {x: 1.2}}}
+  near: {initial: {coordinates: {x: 0.6}}}
+outputs: {x: {coordinate: x}}
+simulation: {duration: 4}
+features: [{samples: {outputs: [x], start: 0, interval: 0.02, count: 200}}]
+noise: {stddev: {x: 0.01}}
+)";
+  std::mt19937 random(4);
+  const std::vector<Table> tables{record(1.2, makeWhite(random)), record(0.6, makeWhite(random))};
+  const std::vector<Recording> recordings{{"a", "far", &tables[0], {}}, {"b", "near", &tables[1], {}}};
+  JointInference inferred = JointInferrer(loadExperimentTree(file), {}).infer(recordings);
+  testModel(file, recordings, {}, inferred);
+  ASSERT_TRUE(inferred.model_test);
+  EXPECT_FALSE(inferred.model_test->missing);
+  EXPECT_EQ(listStatuses(inferred, 2), Statuses{"ok"});
 }
 
 /// A diagnosis of recordings of noise that `make` makes.

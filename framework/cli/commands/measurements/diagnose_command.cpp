@@ -4,6 +4,7 @@
 
 #include "framework/base/files/atomic_file.hpp"
 #include "framework/cli/commands/commands.hpp"
+#include "framework/cli/commands/measurements/experiment_of_run.hpp"
 #include "framework/cli/waiting_line.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/diagnosis/problem/sensor_faults.hpp"
@@ -76,7 +77,8 @@ void diagnose(const DiagnoseArguments& arguments) {
   const std::string name =
       fmt::format("{}", fmt::join(arguments.trials.empty() ? arguments.files : arguments.trials, ", "));
   WaitingLine waiting("diagnose " + (name.empty() ? arguments.run : name));
-  const InferenceSource source(arguments.run);
+  const InferenceSource source = arguments.trials.empty() ? InferenceSource(arguments.run)
+                                                          : readAllTrials(findExperimentFile(arguments.run));
   const MeasurementReader& reader = source.getReader();
   if (arguments.files.empty() && arguments.trials.empty()) {
     requireMeasurements(arguments);

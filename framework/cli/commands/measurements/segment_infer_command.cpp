@@ -4,6 +4,7 @@
 #include "framework/cli/waiting_line.hpp"
 #include "framework/data/measurement/files/read_table.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/experiment/trials/trial_trees.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/segments/segment_inference.hpp"
@@ -29,13 +30,12 @@ void requireSegmentArguments(const InferArguments& arguments) {
 }
 
 ExperimentSpec loadWithoutTrials(const std::string& file) {
-  std::vector<Trial> trials = expandTrials(loadExperimentTree(file));
-  if (trials.size() > 1 || !trials.front().name.empty()) {
-    throw ExperimentError(
-        "segments are of a recording of one experiment, and this one has trials; take the "
-        "trial's keys into a file of its own");
+  const YamlNode tree = selectTrial(loadExperimentTree(file));
+  if (hasTrials(tree)) {
+    throw ExperimentError("segments are of a recording of one experiment, and this one has trials: " +
+                          describeOwnFile());
   }
-  return readExperiment(trials.front().tree);
+  return readExperiment(tree);
 }
 
 }  // namespace
