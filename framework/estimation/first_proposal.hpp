@@ -7,8 +7,8 @@
 
 namespace twinmap {
 
-/// Where the first draws of a posterior go: most about as far from each of its modes as that says, some twice
-/// and few four times as far, and few anywhere. The modes' shares add up to 1.
+/// The first draws of a posterior: most about as far from each of its modes as that says, some twice and few
+/// four times as far, and few anywhere. The modes' shares add up to 1.
 inline importance::BoxMixture proposeAround(const std::vector<importance::NormalPart>& modes) {
   constexpr double kNear = 0.7, kFar = 0.2, kFarthest = 0.05;
   std::vector<importance::NormalPart> parts;

@@ -246,7 +246,7 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::ve
       }
     }
     if (apart) {
-      minimum.objective = improve(rough_, kFewIterations, minimum.point);
+      minimum.objective = calcObjective(rough_, minimum.point);
       minima.push_back(minimum);
     }
   }

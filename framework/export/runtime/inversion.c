@@ -219,7 +219,7 @@ static void search_roughly(twinmap_state *state, int starts, const double *start
     if (!alone) {
       continue;
     }
-    objective = improve(state, METRIC_ROUGH, few_iterations, point);
+    objective = calc_objective(state, METRIC_ROUGH, point);
     for (i = count++; i > 0 && objective < state->minima[i - 1].objective; --i) {
       memcpy(state->minima[i].point, state->minima[i - 1].point, sizeof point);
       state->minima[i].objective = state->minima[i - 1].objective;
