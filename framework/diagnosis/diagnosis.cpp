@@ -258,8 +258,7 @@ void sizeNoiseBy(const ExplainedFit& fit, const ExperimentSpec& stated, const Re
 /// With the noise that is left by what was found: as long as more is found.
 void diagnoseAgain(const ExperimentSpec& experiment, const RecordedFeatures& recordings, Diagnoser& diagnoser,
                    ExperimentSpec& sized, Diagnosis& diagnosis) {
-  constexpr int kRounds = 4;  // at most three terms are found, mostly at once
-  for (int round = 0; round < kRounds && diagnosis.found > 0; ++round) {
+  for (int round = 0; round < kFewIterations && diagnosis.found > 0; ++round) {
     const std::vector<std::string> before = diagnosis.listTerms();
     sizeNoiseBy(diagnosis.after, experiment, recordings, sized);
     diagnosis = diagnoser.run(sized);
@@ -276,14 +275,12 @@ MatrixXd AveragedEstimate::calcQuantiles(const VectorXd& probabilities) const {
 }
 
 std::vector<std::string> Diagnosis::listAtBounds() const {
-  constexpr double kNear = 0.01;  // of the width
   std::vector<std::string> names;
   const VectorXd& best = before.posterior.best;
   for (std::size_t i = 0; i < shared && best.size() > 0 && !before.isExplained(); ++i) {
     const ParameterSpec& parameter = corrected.model.parameters[i];
-    const double value = best[static_cast<Index>(i)];
-    const double width = parameter.bounds.upper - parameter.bounds.lower;
-    if (std::min(value - parameter.bounds.lower, parameter.bounds.upper - value) < kNear * width) {
+    const double lower = parameter.bounds.lower, upper = parameter.bounds.upper;
+    if (std::abs(2.0 * best[static_cast<Index>(i)] - lower - upper) > kAtBound * (upper - lower)) {
       names.push_back(parameter.name.text);
     }
   }

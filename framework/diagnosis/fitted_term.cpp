@@ -78,9 +78,9 @@ double calcScalesEvidence(const LinearizedRecordings& linear, Index first, const
 
 FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                    const TermCandidate& candidate, const TermScore& score, const VectorXd& point) {
-  constexpr double kStddevs = 20.0;  // the posterior's bounds follow from the fit's end
+  // the posterior's bounds follow from the fit's end
   const double largest =
-      std::max({candidate.size, kAboveScore * std::abs(score.estimate), kStddevs * score.stddev});
+      std::max(candidate.size, kAboveScore * std::max(std::abs(score.estimate), score.stddev));
   FittedTerm fitted;
   fitted.augmented = addTerm(experiment, candidate, largest);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
@@ -97,7 +97,7 @@ FittedTerm fitTerm(const ExperimentSpec& experiment, const RecordedFeatures& rec
     fitted.point.resize(0);
     return fitted;  // the parameters, or its own scale, take it up
   }
-  const double reach = std::abs(fitted.estimate) + kStddevs * fitted.stddev;
+  const double reach = std::abs(fitted.estimate) + kAboveScore * fitted.stddev;
   if (reach < largest && !candidate.is_share) {
     setBounds(static_cast<std::size_t>(p), {-reach, reach, {}}, fitted.augmented.experiment);
   }

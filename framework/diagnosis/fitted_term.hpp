@@ -6,8 +6,8 @@
 
 namespace twinmap {
 
-/// So many times what its score estimates a coefficient may be: far enough for a fit of which the linear
-/// model says too little.
+/// So many times what its score estimates, or its standard deviation, a coefficient may be: far enough for a
+/// fit of which the linear model says too little.
 constexpr double kAboveScore = 10.0;
 
 /// A model with the term at its best fit.

@@ -8,6 +8,7 @@
 #include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
 #include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/simulator_posterior.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -178,8 +179,7 @@ KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatur
 }
 
 KnownMachine stateMachine(const ExperimentSpec& experiment, const VectorXd& parameters) {
-  constexpr double kExact = 1e-6;
-  const VectorXd stddevs = kExact * calcWidths(experiment.model.parameters);
+  const VectorXd stddevs = kSameNumber * calcWidths(experiment.model.parameters);
   return {parameters, stddevs.cwiseAbs2().asDiagonal()};
 }
 

@@ -104,9 +104,7 @@ std::optional<MissingTerm> explainMisfit(const CurrentFit& current, const Record
 std::optional<MissingTerm> explainMisfit(const ExperimentSpec& experiment, const RecordedFeatures& recording,
                                          const VectorXd& start) {
   const CurrentFit current = fitFrom(experiment, recording, start);
-  constexpr double kGross =
-      1e4;  // chi-square a residual: a recording that the model is not about, or a wrong unit
-  if (current.point.size() == 0 || current.chi_square > kGross * current.degrees) {
+  if (current.point.size() == 0) {
     return {};
   }
   std::optional<MissingTerm> missing = explainMisfit(current, recording, CandidateKinds::kWithoutStates);

@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "framework/base/text/number_text.hpp"
@@ -21,8 +23,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kSmallestChange = 1e-300;
 
 /// A test of a model with a term at its fit: residuals, and their derivatives by what all tests share (the
 /// machine's parameters and the term's own) and by what is the test's own.
@@ -58,8 +58,8 @@ std::vector<FittedTest> linearizeAll(const std::vector<const FittedTerm*>& tied,
 /// measurements: the evidence differs by D/2 with a standard deviation of sqrt(D), and ties below
 /// kTiedEvidence.
 double calcToldChiSquare() {
-  constexpr double kQuantile = 1.645;  // of the normal distribution at 95 %
-  const double root = kQuantile + std::sqrt(kQuantile * kQuantile + 2.0 * kTiedEvidence);
+  const double quantile = boost::math::quantile(boost::math::normal(), 0.95);
+  const double root = quantile + std::sqrt(quantile * quantile + 2.0 * kTiedEvidence);
   return root * root;
 }
 
@@ -76,7 +76,8 @@ VectorXd calcLargestChange(const FittedTerm& fitted, const FittedTest& first, co
   for (Index i = 0; i < change.size(); ++i) {
     const Bounds& bounds = parameters[static_cast<std::size_t>(i)].bounds;
     const double room = change[i] > 0.0 ? bounds.upper - fitted.point[i] : fitted.point[i] - bounds.lower;
-    fits = std::min(fits, std::max(room, 0.0) / std::max(std::abs(change[i]), kSmallestChange));
+    fits = std::min(fits,
+                    std::max(room, 0.0) / std::max(std::abs(change[i]), std::numeric_limits<double>::min()));
   }
   return fits * change;
 }

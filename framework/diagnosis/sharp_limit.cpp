@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "framework/diagnosis/problem/score_test.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -27,7 +28,7 @@ bool isExcluded(const LinearizedRecordings& linear, Index scale, double above, d
   const ScoreTest test(linear.residual, linear.jacobian(Eigen::all, listOthers(u, scale, 1)),
                        linear.jacobian.col(scale));
   const TermScore score = test.calcScore(0, kInfinity);
-  return score.visible && above > std::sqrt(noise * kNoticedChiSquare) * score.stddev;
+  return score.visible && above > std::sqrt(noise) * kBasinReach * score.stddev;
 }
 
 /// The bound at which a descent ends, and the fits on the way.
@@ -64,7 +65,7 @@ Descent descend(const RecordingsProblem& problem, Index scale, double lower, dou
     descent.fits.push_back(held);
     const RecordingFit& best = descent.findBest();
     const bool is_below = before.point[scale] <= best.point[scale] && fall > 0;
-    if (held.chi_square > best.chi_square + noise * kNoticedChiSquare ||
+    if (held.chi_square > best.chi_square + noise * kBasinReach * kBasinReach ||
         (is_below && std::abs(held.chi_square - before.chi_square) < noise * kFlat)) {
       return descent;
     }

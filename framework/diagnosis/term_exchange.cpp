@@ -5,16 +5,13 @@
 #include <optional>
 
 #include "framework/diagnosis/term_sets.hpp"
+#include "framework/estimation/levels.hpp"
 
 namespace twinmap {
 
 using Eigen::Index;
 
 namespace {
-
-/// In the place of a term kFittedOfBest are fitted, and that term itself; and so many of those that the
-/// scores hardly tell from the best.
-constexpr std::size_t kExchangeAlike = 6;
 
 /// Candidates in the place of a term, fitted beside the others; the largest evidence first.
 struct Rivals {
@@ -23,9 +20,11 @@ struct Rivals {
   std::size_t present = 0;  ///< the term itself
 };
 
+/// In the place of a term kFittedOfBest are fitted, and that term itself, and those that the scores hardly
+/// tell from the best.
 std::size_t countFitted(const std::vector<RankedTerm>& ranked) {
   std::size_t count = std::min(ranked.size(), kFittedOfBest);
-  while (count < std::min(ranked.size(), kExchangeAlike) &&
+  while (count < std::min(ranked.size(), kFittedAlike) &&
          ranked.front().finding.log_evidence - ranked[count].finding.log_evidence < kTiedEvidence) {
     ++count;
   }
@@ -66,7 +65,7 @@ std::optional<Rivals> findRivals(const ExperimentSpec& without_terms, const Reco
 bool takesOver(const Rivals& rivals, const CurrentFit& fit) {
   const TermFinding &best = rivals.ranked.front().finding, &present = rivals.ranked[rivals.present].finding;
   return rivals.present != 0 && best.fitted && best.log_evidence > present.log_evidence + kTiedEvidence &&
-         best.chi_square < fit.chi_square + kNoticedChiSquare;
+         best.chi_square < fit.chi_square + kBasinReach * kBasinReach;
 }
 
 /// Adds those that cannot be told from `chosen`, which stands for `term`.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "framework/estimation/levels.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -70,8 +72,8 @@ void fitRanked(const CurrentFit& current, const RecordedFeatures& recordings, co
   ranked.fitted =
       fitTerm(current.experiment, recordings, finding.candidate, scored.scores[ranked.index], current.point);
   const FittedTerm& fitted = ranked.fitted;
-  constexpr double kWorse = 1e-6;  // of chi-square: a term of size 0 fits as well as none, up to rounding
-  if (fitted.point.size() == 0 || !(fitted.chi_square <= (1.0 + kWorse) * current.chi_square)) {
+  // a term of size 0 fits as well as none
+  if (fitted.point.size() == 0 || !(fitted.chi_square <= (1.0 + kSameNumber) * current.chi_square)) {
     finding.log_evidence = -kInfinity;
     return;
   }

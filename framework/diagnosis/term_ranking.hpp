@@ -37,6 +37,9 @@ std::vector<RankedTerm> rankTerms(const ScoredCandidates& scored, const CurrentF
 
 /// So many of the best by their scores are fitted where little is to be lost.
 constexpr std::size_t kFittedOfBest = 3;
+/// And so many of those that the linear model hardly tells from the best: the same terms on both sides of a
+/// gear, say.
+constexpr std::size_t kFittedAlike = 12;
 
 bool hasMoreEvidence(const RankedTerm& a, const RankedTerm& b);
 

@@ -8,6 +8,7 @@
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/diagnosis/second_test.hpp"
 #include "framework/diagnosis/term_exchange.hpp"
+#include "framework/estimation/levels.hpp"
 
 namespace twinmap {
 
@@ -20,10 +21,6 @@ namespace {
 /// large.
 constexpr std::size_t kFittedTerms = 6;
 
-/// And so many of those that the linear model hardly tells from the best: the same terms on both sides of a
-/// gear, say.
-constexpr std::size_t kFittedAlike = 12;
-
 /// Of the level, for pairs of terms: singles have the rest.
 constexpr double kPairShare = 0.1;
 
@@ -35,7 +32,7 @@ bool isExplainedBy(const CurrentFit& current, const RankedTerm& single) {
 /// Whether a fit ended elsewhere than the linear model said, by more than is noticed.
 bool isBent(const CurrentFit& current, const RankedTerm& one) {
   const double linear = current.chi_square - one.finding.z * one.finding.z;
-  return one.finding.fitted && std::abs(one.finding.chi_square - linear) > kNoticedChiSquare;
+  return one.finding.fitted && std::abs(one.finding.chi_square - linear) > kBasinReach * kBasinReach;
 }
 
 /// Of those that evidence does not tell apart, one that stands out of what remains comes first: the freedom

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/estimation/levels.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -105,12 +107,9 @@ void describePair(const CurrentFit& current, const RecordedFeatures& recordings,
 }  // namespace
 
 std::optional<TermPair> findPair(const ScoredCandidates& scored, const std::string& with) {
-  constexpr std::size_t kJudged = 300;  // the evidence differs from half the gain by a few units only
-  const std::vector<TermPair> pairs = listPairs(scored, with);
   const double tests = 0.5 * scored.tested * (scored.tested - 1.0);
   std::optional<TermPair> best;
-  for (std::size_t k = 0; k < std::min(kJudged, pairs.size()); ++k) {
-    TermPair pair = pairs[k];
+  for (TermPair& pair : listPairs(scored, with)) {
     const TermCandidate &first = scored.candidates[pair.first], &second = scored.candidates[pair.second];
     pair.score =
         scored.test->calcJointScore({static_cast<Index>(pair.first), static_cast<Index>(pair.second)});
@@ -196,7 +195,7 @@ std::vector<std::string> dropSuperfluous(const ExperimentSpec& without_terms,
       continue;
     }
     CurrentFit without = fitWithout(without_terms, recordings, fit, i);
-    if (without.point.size() == 0 || without.chi_square > fit.chi_square + kNoticedChiSquare) {
+    if (without.point.size() == 0 || without.chi_square > fit.chi_square + kBasinReach * kBasinReach) {
       ++i;
       continue;
     }

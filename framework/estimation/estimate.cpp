@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -159,9 +160,8 @@ MatrixXd calcCorrelation(const MatrixXd& covariance) {
 namespace {
 
 Eigen::MatrixXd makePositiveDefinite(const Eigen::MatrixXd& correlation) {
-  constexpr double kMinEigenvalue = 1e-6;
   const double least = linalg::calcSymmetricEigenvalues(correlation)[0];
-  const double weight = std::max(0.0, (kMinEigenvalue - least) / (1.0 - least));
+  const double weight = std::max(0.0, (kSameNumber - least) / (1.0 - least));
   Eigen::MatrixXd shrunk = (1.0 - weight) * correlation;
   shrunk.diagonal().setOnes();
   return shrunk;

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace twinmap {
 namespace {
 
 /// Whether a normal distribution's intervals of such a probability hold something else.
 bool isMissed(const Eigen::VectorXd& depths, double probability, double factor, double samples) {
-  constexpr double kErrors = 2.0;
   const double held = (depths.array() < factor).cast<double>().mean();
-  return std::abs(held - probability) > kErrors * calcProportionError(probability, samples);
+  return std::abs(held - probability) > kNormal95 * calcProportionError(probability, samples);
 }
 
 }  // namespace
@@ -87,14 +87,12 @@ double calcShareBelow(const Eigen::VectorXd& sorted, double value) {
 /// these by opposite amounts, those of 95 % counted twice. Their sum rises with the factor, so that halving
 /// finds it.
 double calcBalancedScale(const Eigen::VectorXd& sorted) {
-  constexpr int kHalvings = 40;
-  constexpr double kWanted = 0.5 + 2.0 * 0.95;
   double low = calcMiddleScale(sorted, 0.0), high = calcLargerScale(sorted, 0.0);
-  for (int i = 0; i < kHalvings; ++i) {
+  while (high - low > std::numeric_limits<double>::epsilon() * high) {
     const double scale = 0.5 * (low + high);
     const double found =
         calcShareBelow(sorted, kNormal50 * scale) + 2.0 * calcShareBelow(sorted, kNormal95 * scale);
-    (found < kWanted ? low : high) = scale;
+    (found < 0.5 + 2.0 * 0.95 ? low : high) = scale;
   }
   return high;
 }
@@ -107,9 +105,8 @@ Eigen::VectorXd sortErrors(Eigen::VectorXd values) {
 }  // namespace
 
 double calcStddevScale(const Eigen::VectorXd& absolute_z) {
-  constexpr Eigen::Index kMany = 2000;  // whose factor has a standard error of 2 %
   const Eigen::VectorXd sorted = sortErrors(absolute_z);
-  return sorted.size() > kMany
+  return sorted.size() > kManyErrors
              ? calcBalancedScale(sorted)
              : std::max(calcLargerScale(sorted, 0.0), std::min(1.0, calcLargerScale(sorted, kNormal95)));
 }

@@ -8,6 +8,9 @@ namespace twinmap {
 /// The 50 %, 68 % and 95 % intervals of a normal distribution are mean +- so many standard deviations.
 constexpr double kNormal50 = 0.674489750196082, kNormal68 = 0.994457883209753, kNormal95 = 1.959963984540054;
 
+/// Errors or draws of which a factor and quantiles are known to 2 %.
+constexpr int kManyErrors = 2000;
+
 /// Half widths of a parameter's intervals of 50 % and 95 % in standard deviations: conformal ones, sized by
 /// held-out errors, where these are not normal.
 struct IntervalFactor {

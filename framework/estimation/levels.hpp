@@ -28,8 +28,19 @@ constexpr double kFlatInformation = 3.0 * kHalfWidthInformation;
 /// Of the standard deviation that the bounds allow: what is narrower is surely determined, half of what is
 /// flat.
 constexpr double kMayBeFlat = 0.25;
-/// Of the largest diagonal, added to what may be singular.
+/// Of the largest diagonal, added to what may be singular; the square of kSameNumber.
 constexpr double kRegular = 1e-12;
+/// Of a number, a width or a spacing: what differs by less is the same, but for rounding and differences.
+constexpr double kSameNumber = 1e-6;
+/// Half-widths from the centre of the bounds: what is further out is at one, as searches end near it.
+constexpr double kAtBound = 0.999;
+/// Standard deviations: what moves an estimate by less, or adds less to a residual, is not worth a word.
+constexpr double kImmaterial = 0.1;
+/// Standard deviations by which something must move to be noticed: adds a tenth to what noise scatters, and
+/// leaves 95 % intervals .92.
+constexpr double kNoticeable = 0.5;
+/// Samples, or scores, by which a number is told well: a parameter, a term of a regression, a correlation.
+constexpr Eigen::Index kPerUnknown = 5;
 /// Samples of which neighbours tell whether noise is white, or a clock right.
 constexpr Eigen::Index kFewestTested = 20;
 /// Of a misfit: a simpler recording is taken for another where it leaves less.

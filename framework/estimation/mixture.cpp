@@ -25,8 +25,6 @@ double calcNormalProbability(double z) {
   return 0.5 * std::erfc(-z * constants::one_div_root_two<double>());
 }
 
-constexpr int kExactly = 45, kRoughly = 32;  // halvings of a tenth of a standard deviation
-
 /// Values between which the density is monotonous, or nearly: those of every component's own scale.
 std::vector<double> listScale(const MarginalMixture& marginal) {
   constexpr double kReach = 10.0, kStep = 0.1;  // standard deviations
@@ -52,17 +50,16 @@ class LevelSets {
 
   double getHighest() const { return *std::max_element(densities_.begin(), densities_.end()); }
 
-  /// Ends to a tenth of a standard deviation over 2^halvings.
-  Intervals findAbove(double level, int halvings) const {
+  Intervals findAbove(double level) const {
     Intervals intervals;
     bool was_above = densities_.front() > level;
     double begin = values_.front();
     for (std::size_t i = 1; i < values_.size(); ++i) {
       const bool is_above = densities_[i] > level;
       if (is_above && !was_above) {
-        begin = findCrossing(level, values_[i - 1], values_[i], halvings);
+        begin = findCrossing(level, values_[i - 1], values_[i]);
       } else if (was_above && !is_above) {
-        intervals.emplace_back(begin, findCrossing(level, values_[i], values_[i - 1], halvings));
+        intervals.emplace_back(begin, findCrossing(level, values_[i], values_[i - 1]));
       }
       was_above = is_above;
     }
@@ -74,8 +71,10 @@ class LevelSets {
 
  private:
   /// Between values on either side of the level, on the side above it.
-  double findCrossing(double level, double below, double above, int halvings) const {
-    for (int i = 0; i < halvings; ++i) {
+  double findCrossing(double level, double below, double above) const {
+    const double exact =
+        std::numeric_limits<double>::epsilon() * (std::abs(values_.back()) + std::abs(values_.front()));
+    while (std::abs(above - below) > exact) {
       const double middle = 0.5 * (below + above);
       (marginal_.calcDensity(middle) > level ? above : below) = middle;
     }
@@ -202,18 +201,18 @@ std::vector<MarginalMixture> takeMarginals(const std::vector<Mixture>& mixtures,
 }
 
 Intervals findAbove(const MarginalMixture& marginal, double level) {
-  return LevelSets(marginal).findAbove(level, kExactly);
+  return LevelSets(marginal).findAbove(level);
 }
 
 Intervals findHighestDensity(const MarginalMixture& marginal, double probability) {
   const LevelSets sets(marginal);
   double below = 0.0, above = sets.getHighest();
-  for (int i = 0; i < kExactly; ++i) {
+  while (above - below > std::numeric_limits<double>::epsilon() * sets.getHighest()) {
     const double middle = 0.5 * (below + above);
-    const double found = calcProbability(marginal, sets.findAbove(middle, kRoughly));
+    const double found = calcProbability(marginal, sets.findAbove(middle));
     (found > probability ? below : above) = middle;
   }
-  return sets.findAbove(below, kExactly);
+  return sets.findAbove(below);
 }
 
 Intervals findWithin(const MarginalMixture& marginal, double depth) {
@@ -239,8 +238,9 @@ double calcCredibility(const MarginalMixture& marginal, double value) {
 }
 
 double calcDepth(const MarginalMixture& marginal, double value) {
-  constexpr double kLargest = 1.0 - 1e-15;  // so that half of it and 1 is below 1
-  const double credibility = std::min(calcCredibility(marginal, value), kLargest);
+  // so that half of it and 1 is below 1
+  const double largest = 1.0 - 4.0 * std::numeric_limits<double>::epsilon();
+  const double credibility = std::min(calcCredibility(marginal, value), largest);
   return boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + credibility));
 }
 

@@ -19,6 +19,7 @@
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/measurement/trained_excitation.hpp"
 #include "framework/data/reduction/reduced_simulator.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
 #include "framework/models/make_simulator.hpp"
 
@@ -251,7 +252,6 @@ AvailableFeatures MeasurementReader::reduce(AvailableResponse response, const st
 }
 
 void MeasurementReader::warnOfInterpolation(const Table& table, std::optional<double> start) const {
-  constexpr double kMatters = 0.1;  // of the noise: of a hundred samples a standard deviation of a parameter
   const ExperimentSpec& experiment = reduction_ ? whole_ : experiment_;
   const ResponseLayout& layout = getRecorded();
   if (layout.times.size() == 0 || isFrequencyResponse(table, linear_.getInfos())) {
@@ -270,7 +270,7 @@ void MeasurementReader::warnOfInterpolation(const Table& table, std::optional<do
     const double stddev = experiment.noise.scale * stated->stddev;
     const Samples samples = twinmap::readSamples(recording.getRows(name), experiment.measurement, layout, o);
     const double error = calcInterpolationError(samples.times, samples.values, needed, stddev);
-    if (stddev > 0.0 && error > kMatters * stddev) {
+    if (stddev > 0.0 && error > kImmaterial * stddev) {
       logWarning(
           fmt::format("{}: features of {} lie between its samples, where the cubic errs by {} of its noise; "
                       "estimates may "

@@ -89,13 +89,12 @@ Eigen::Vector3d calcCross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 /// Gravity turned by the coefficient about `axis`.
 TermCandidate makeTilt(const ModelSizes& sizes, const Eigen::Vector3d& axis, const char* name) {
-  constexpr double kLarge = 0.02;  // rad: what a spirit level shows at once
   const Eigen::Vector3d turned = calcCross(axis, sizes.gravity);
   TermCandidate tilt;
   tilt.term = fmt::format("tilt.{}", name);
   tilt.meaning = fmt::format("gravity turned by c about the ground's {}", name);
   tilt.unit = "rad";
-  tilt.size = kLarge;
+  tilt.size = kLargeShare;
   tilt.add = [turned](ModelSpec& model, const std::string& coefficient, const std::vector<std::string>&) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double part = turned[static_cast<Eigen::Index>(i)];

@@ -80,12 +80,11 @@ AddTerm makeAdd(ChangeContact change, std::size_t contact, double force) {
 }
 
 TermCandidate makePower(const std::string& name, std::size_t contact, const ContactSizes& sizes) {
-  constexpr double kHertz = 0.5;  // spheres: a power of 1.5 in the place of 1
   TermCandidate candidate;
   candidate.term = "contact_power." + name;
   candidate.meaning = "the contact's force grows with the power 1 + c of what it is";
   candidate.unit = "1";
-  candidate.size = kHertz;
+  candidate.size = kLargeShare;
   candidate.add = makeAdd(raisePower, contact, sizes.force);
   return candidate;
 }

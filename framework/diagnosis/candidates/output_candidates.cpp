@@ -125,7 +125,6 @@ void addClipping(std::size_t index, const std::string& name, const OutputText& t
 
 /// All outputs recorded by a clock that is fast by the share c: a later sample is a still later state.
 void addClock(const std::vector<OutputText>& texts, std::vector<TermCandidate>& candidates) {
-  constexpr double kLargeDrift = 0.01;
   const bool have_rates =
       std::all_of(texts.begin(), texts.end(), [](const OutputText& text) { return !text.rate.empty(); });
   if (!have_rates) {
@@ -135,7 +134,7 @@ void addClock(const std::vector<OutputText>& texts, std::vector<TermCandidate>& 
   clock.term = "clock.outputs";
   clock.meaning = "the recorder of the outputs sees time pass faster by the factor 1 + c";
   clock.unit = "1";
-  clock.size = kLargeDrift;
+  clock.size = kLargeShare;
   clock.add = [texts](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
     for (std::size_t i = 0; i < texts.size(); ++i) {
       addToOutput(changed, i, coefficient + "*t*" + texts[i].rate);

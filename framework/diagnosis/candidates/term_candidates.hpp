@@ -11,8 +11,8 @@ namespace twinmap {
 /// Of the duration: what recordings are read beside it, and signals go on by, for the delays that are tried.
 constexpr double kDelayMargin = 0.25;
 
-/// Sizes of coefficients that are large: a share of what a gain, a mass or an offset is of; of the duration,
-/// a delay; and the shortest lag that is scanned.
+/// Sizes of coefficients that are large: a share of what a gain, a mass, an offset, a power or a clock is of,
+/// or of gravity; of the duration, a delay; and the shortest lag that is scanned.
 constexpr double kLargeShare = 0.1, kLongDelay = 0.005, kShortestLag = 0.002;
 
 /// OwnScale::reach of what is limited: a limit near 0 would be a gain with a step at 0, a dead zone as wide

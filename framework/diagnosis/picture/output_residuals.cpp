@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
+#include "framework/estimation/levels.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-
-/// Fewer samples show nothing.
-constexpr std::size_t kFewestShown = 4;
 
 /// Residuals of one output of one recording whose times rise.
 struct Sequence {
@@ -30,7 +29,7 @@ std::vector<Sequence> listSequences(const std::vector<FeatureInfo>& infos) {
   }
   sequences.erase(
       std::remove_if(sequences.begin(), sequences.end(),
-                     [](const Sequence& one) { return one.output < 0 || one.places.size() < kFewestShown; }),
+                     [](const Sequence& one) { return one.output < 0 || one.places.size() < kFewestTested; }),
       sequences.end());
   return sequences;
 }

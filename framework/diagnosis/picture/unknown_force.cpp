@@ -6,6 +6,7 @@
 #include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/process_fit.hpp"
 #include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/refined/measured_misfit.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -25,7 +26,6 @@ constexpr Index kRangeKnots = 65;
 /// drawn and simulated in some tenths of a second.
 constexpr double kKnotsPerPeriod = 16.0;
 constexpr Index kFewestKnots = 40, kMostKnots = 320;
-constexpr double kMostBytes = 256.0 * 1024 * 1024;  // of derivatives by knots
 
 /// Correlation lengths, of a period or a range: the evidence changes little with them. Smoother processes
 /// have as much of it, but bands that hold too little about a step.
@@ -220,7 +220,7 @@ class ForceEstimator {
       periods = std::max(periods, countPeriods(moved.coordinates[c].speed));
     }
     const double most =
-        kMostBytes / (sizeof(double) * static_cast<double>(together_->getLinear().residual.size()));
+        static_cast<double>(kNumbersTogether) / static_cast<double>(together_->getLinear().residual.size());
     const Index knots =
         std::clamp(static_cast<Index>(std::min(kKnotsPerPeriod * periods, most)), kFewestKnots, kMostKnots);
     const double duration = fine_times_[fine_times_.size() - 1];

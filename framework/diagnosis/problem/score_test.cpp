@@ -4,6 +4,7 @@
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -29,14 +30,11 @@ struct Autoregression {
 /// Of residuals; rho only where it is above three standard errors, and no variance below that stated.
 Autoregression fitAutoregression(const Eigen::Ref<const VectorXd>& residual) {
   const Index n = residual.size();
-  constexpr Index kFewest = 10;
-  constexpr double kLargest = 0.99;
   const double squares = residual.squaredNorm();
-  double rho = n >= kFewest && squares > 0.0 ? residual.tail(n - 1).dot(residual.head(n - 1)) / squares : 0.0;
+  double rho = squares > 0.0 ? residual.tail(n - 1).dot(residual.head(n - 1)) / squares : 0.0;
   if (std::abs(rho) * std::sqrt(static_cast<double>(n)) < 3.0) {
     rho = 0.0;
   }
-  rho = std::clamp(rho, -kLargest, kLargest);
   const double variance = squares / static_cast<double>(n) * (1.0 - rho * rho);
   return {rho, std::sqrt(std::max(1.0 - rho * rho, variance))};
 }
@@ -66,10 +64,9 @@ ScoreTest::ScoreTest(const VectorXd& residual, const MatrixXd& jacobian, const M
 }
 
 TermScore ScoreTest::calcScore(Index term, double size) const {
-  constexpr double kSeen = 0.1, kKept = 1e-3;
   TermScore score;
   const double whole = given_.col(term).norm(), kept = terms_.col(term).norm();
-  if (!(whole * size > kSeen) || !(kept > kKept * whole)) {
+  if (!(whole * size > kImmaterial) || !(kept * kept > kSameNumber * whole * whole)) {
     return score;
   }
   score.visible = true;

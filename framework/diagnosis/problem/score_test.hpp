@@ -8,9 +8,6 @@ namespace twinmap {
 /// What log evidences differ by where they do not tell terms apart: 20 to 1.
 constexpr double kTiedEvidence = 3.0;
 
-/// A chi-square larger by more is noticed where a fit is not linear: three standard deviations.
-constexpr double kNoticedChiSquare = 9.0;
-
 /// What a term would explain of a residual beside what the parameters can take up (Rao's score test; Rao
 /// 1948), by the linear model at a fit.
 struct TermScore {

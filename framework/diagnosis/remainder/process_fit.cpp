@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -42,8 +43,8 @@ IndependentParts splitProcess(const ProcessEffect& effect, const LinearizedRecor
   const MatrixXd lower = linalg::calcCholesky(calcCorrelation(effect.knots, length)).lower;
   const MatrixXd responses = effect.responses * lower.triangularView<Eigen::Lower>();
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(responses.transpose() * responses);
-  constexpr double kLeast = 1e-8;  // of the largest: the root of what products of doubles resolve
-  const double least = kLeast * eigen.values.maxCoeff();
+  // products of doubles resolve no more
+  const double least = std::sqrt(std::numeric_limits<double>::epsilon()) * eigen.values.maxCoeff();
   const VectorXd inverses = (eigen.values.array() > least).select(eigen.values.cwiseInverse(), 0.0);
   MatrixXd data = joinData(linear);
   const MatrixXd projected = eigen.vectors.transpose() * (responses.transpose() * data);

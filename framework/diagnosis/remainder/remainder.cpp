@@ -6,6 +6,7 @@
 #include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/process_fit.hpp"
 #include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -101,12 +102,11 @@ std::vector<BestProcess> searchProcesses(const std::vector<FittedRecording>& rec
 /// with the best one.
 void averageProcesses(const std::vector<FittedRecording>& recordings, Index shared,
                       const std::vector<BestProcess>& processes, Index p, Remainder& remainder) {
-  constexpr double kNegligible = 10.0;  // of log evidence: 5e-5 of the whole
   double sum = 0.0;
   VectorXd mean = VectorXd::Zero(p), square = VectorXd::Zero(p);
   for (std::size_t e = 0; e < processes.size(); ++e) {
     const double less = remainder.log_evidence - processes[e].log_evidence;
-    if (!(less < kNegligible)) {
+    if (!(2.0 * less < kBasinAbove)) {
       continue;
     }
     const ProcessEstimate estimate = estimateProcess({recordings, e, shared}, processes[e]);

@@ -9,6 +9,7 @@
 #include "framework/base/text/text_tables.hpp"
 #include "framework/diagnosis/problem/score_test.hpp"
 #include "framework/diagnosis/remainder/residual_noise.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
 namespace twinmap {
@@ -29,7 +30,6 @@ std::string describeOwnScales(const TermCandidate& candidate) {
 
 /// "k -3.2, d +41": the parameters that move by more than half a standard deviation, or "none".
 std::string describeShifts(const VectorXd& shifts, const std::vector<ParameterSpec>& parameters) {
-  constexpr double kNoticeable = 0.5;
   std::string text;
   for (Index i = 0; i < shifts.size(); ++i) {
     if (std::abs(shifts[i]) > kNoticeable) {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "framework/estimation/draws.hpp"
+#include "framework/estimation/interval_factor.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -17,7 +19,6 @@ namespace {
 
 constexpr double kNodeDistance = 0.05, kLastNode = 6.0;  // standard deviations: errors below 1e-3 of one
 constexpr Index kNodes = 2 * static_cast<Index>(kLastNode / kNodeDistance) + 1;
-constexpr double kDifference = 1e-6;  // of the widths
 
 VectorXd makeStandardNodes() {
   return VectorXd::LinSpaced(kNodes, -kLastNode, kLastNode);
@@ -115,7 +116,7 @@ MatrixXd DerivedQuantities::calcAll(const MatrixXd& points) const {
 
 MatrixXd DerivedQuantities::calcGradients(const VectorXd& point) const {
   const Index p = point.size();
-  const VectorXd steps = kDifference * (upper_ - lower_);
+  const VectorXd steps = kSameNumber * (upper_ - lower_);
   MatrixXd points(p, 2 * p);
   points << MatrixXd(steps.asDiagonal()), MatrixXd((-steps).asDiagonal());
   points.colwise() += point;
@@ -135,15 +136,14 @@ VectorXd DerivedQuantities::calcAlong(Index quantity, const VectorXd& mean, cons
 
 VectorXd DerivedQuantities::calcDrawn(Index quantity, const VectorXd& mean,
                                       const MatrixXd& covariance) const {
-  constexpr int kDraws = 2000;
   const MatrixXd draws = drawNormal(mean, covariance.diagonal().cwiseSqrt(), calcCorrelation(covariance),
-                                    kDraws, RandomStream(1, RandomPurpose::kEnsemble));
+                                    kManyErrors, RandomStream(1, RandomPurpose::kEnsemble));
   VectorXd values = calcAll(draws).row(quantity).transpose();
   std::sort(values.begin(), values.end());
   // at the probabilities of the nodes
   return VectorXd::NullaryExpr(kNodes, [&, z = makeStandardNodes()](Index i) {
     const double probability = 0.5 * boost::math::erfc(-z[i] / std::sqrt(2.0));
-    return values[std::min<Index>(static_cast<Index>(probability * kDraws), kDraws - 1)];
+    return values[std::min<Index>(static_cast<Index>(probability * kManyErrors), kManyErrors - 1)];
   });
 }
 

@@ -4,6 +4,7 @@
 
 #include "framework/data/reduction/affine_step.hpp"
 #include "framework/data/reduction/principal_components.hpp"
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -14,7 +15,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of all variables, of the highest degree that leaves four samples a term.
+/// Of all variables, of the highest degree that leaves enough samples a term.
 network::Products chooseDegree(Index variables, Index samples) {
   for (const network::Products products :
        {network::Products{variables, variables}, network::Products{variables, 0}}) {
@@ -35,10 +36,9 @@ MatrixXd makePolynomials(const MatrixXd& points) {
 
 /// What a regression on the terms explains of the inputs' covariance.
 MatrixXd calcExplained(const MatrixXd& terms, const MatrixXd& inputs) {
-  constexpr double kRidge = 1e-8;  // of terms with a variance of order 1: parameters on a grid may repeat
   const auto n = static_cast<double>(inputs.cols());
   MatrixXd squares = terms * terms.transpose() / n;
-  squares.diagonal().array() += kRidge;
+  squares.diagonal().array() += kSameNumber;  // of a variance of 1: parameters on a grid may repeat
   const MatrixXd cross = terms * inputs.transpose() / n;
   const MatrixXd half = linalg::solveLower(linalg::calcCholesky(squares).lower, cross);
   return half.transpose() * half;
@@ -46,9 +46,8 @@ MatrixXd calcExplained(const MatrixXd& terms, const MatrixXd& inputs) {
 
 /// W with W C W' = 1, but for directions of no variance.
 MatrixXd calcWhitening(const MatrixXd& covariance) {
-  constexpr double kSmallest = 1e-10;
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(covariance);
-  const double least = kSmallest * eigen.values.maxCoeff();
+  const double least = kRegular * eigen.values.maxCoeff();
   const VectorXd scale =
       eigen.values.unaryExpr([least](double value) { return value > least ? 1.0 / std::sqrt(value) : 0.0; });
   return scale.asDiagonal() * eigen.vectors.transpose();
@@ -57,8 +56,7 @@ MatrixXd calcWhitening(const MatrixXd& covariance) {
 }  // namespace
 
 bool sufficeFor(Index variables, const network::Products& products, Index samples) {
-  constexpr Index kSamplesPerTerm = 4;
-  return kSamplesPerTerm * (variables + products.count()) <= samples;
+  return kPerUnknown * (variables + products.count()) <= samples;
 }
 
 CanonicalInputs calcCanonicalInputs(const MatrixXd& inputs, const MatrixXd& points) {

@@ -60,7 +60,7 @@ network::BatchSource makeSource(const NetworkSet& set, const std::vector<Index>&
 }
 
 /// Of the inputs that vary most: they save a network most of its work where a response is smooth. Fewer where
-/// four samples a term would be too many.
+/// there are too few samples for them.
 network::Products chooseProducts(Index inputs, Index samples) {
   constexpr Index kMaxSquared = 12, kMaxCubed = 8;
   network::Products products{std::min(inputs, kMaxSquared), std::min(inputs, kMaxCubed)};

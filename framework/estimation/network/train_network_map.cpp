@@ -28,11 +28,9 @@ namespace {
 // calibrated a network is, for a factor within 1 %.
 constexpr Index kColumnsOfFew = 2000, kColumnsOfMany = 8000;
 
-/// One of how many is held out: of ten; of few, and where those held out are to tell how calibrated the
-/// network is, of five, until a tenth are 2000.
+/// One of how many is held out: of five, until a tenth are enough to tell how calibrated the network is.
 Index calcPeriod(Index samples) {
-  constexpr Index kFew = 1000;
-  return samples < kFew || (samples >= NetworkMapSpec::kMany && samples < NetworkMapSpec::kVeryMany) ? 5 : 10;
+  return samples < NetworkMapSpec::kVeryMany ? 5 : 10;
 }
 
 /// count: of all samples, where `all` are those of a fold.

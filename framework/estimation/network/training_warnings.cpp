@@ -53,7 +53,6 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
     double probability, quantile, small;
   };
   constexpr Level kLevels[] = {{0.5, kNormal50, 0.04}, {0.95, kNormal95, 0.025}};
-  constexpr Index kFewest = 4;  // components that are worth a trial
   const double simulations = static_cast<double>(training.held_out_truth.cols()) / training.held_out_draws;
   for (Index p = 0; p < training.held_out_truth.rows(); ++p) {
     const Eigen::ArrayXd depths = calcDepths(training.held_out, training.held_out_truth, p);
@@ -63,7 +62,7 @@ void warnOfShape(const std::vector<ParameterSpec>& parameters, NetworkMapTrainin
         training.warnings.push_back(describeNotice(
             Notice::kShape, parameters[static_cast<std::size_t>(p)].name.text, 100.0 * probability,
             100.0 * share, describeShape(probability, share, training.map.countComponents()),
-            std::max<Index>(kFewest, 2 * training.map.countComponents())));
+            2 * std::max<Index>(2, training.map.countComponents())));
         break;
       }
     }

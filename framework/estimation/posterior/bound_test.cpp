@@ -17,7 +17,6 @@ namespace {
 
 /// Coordinates at a bound that lead further out.
 std::vector<Index> findHeld(const LocalSurface& minimum) {
-  constexpr double kAtBound = 0.999;  // searches end near the minimum
   std::vector<Index> held;
   for (Index j = 0; j < minimum.at.size(); ++j) {
     if (std::abs(minimum.at[j]) > kAtBound && minimum.at[j] * minimum.descent[j] > 0.0) {

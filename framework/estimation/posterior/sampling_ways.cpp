@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/basins/straight_ridge.hpp"
 #include "framework/estimation/posterior/basins/valley.hpp"
 #include "framework/estimation/posterior/draws/followed_draws.hpp"
@@ -123,13 +124,12 @@ Sampling sampleSums(const PosteriorProblem& problem, const BasinSearch& found, P
 /// deviation: 95 % intervals of that parameter then hold .92.
 bool isLinearFor(MisfitSurface& surface, const Basin& basin, const MatrixXd& draws) {
   constexpr Index kChecked = 8;  // the root mean square is then known to a quarter
-  constexpr double kFarthest = 0.5;
   const Index count = std::min(kChecked, draws.cols());
   MatrixXd points(draws.rows(), count);
   for (Index i = 0; i < count; ++i) {
     points.col(i) = draws.col(i * draws.cols() / count);  // of a chain, far apart
   }
-  return calcDisplacements(surface, basin, points).maxCoeff() <= kFarthest;
+  return calcDisplacements(surface, basin, points).maxCoeff() <= kNoticeable;
 }
 
 /// In the parameters as they are, by `draw` of a surface and the basins there.

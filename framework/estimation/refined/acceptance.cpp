@@ -17,7 +17,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kMinTestReach = 0.5;                  // standard deviations
 constexpr double kMinRise = 0.25, kLargestRise = 3.0;  // of what the linear model says
 
 /// Points beside a minimum and the minimum itself, last; and how far each is along its eigenvector, in

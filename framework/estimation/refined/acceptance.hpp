@@ -31,7 +31,7 @@ Acceptance testMinimum(Misfit& misfit, const LocalMisfit& minimum, bool along_ri
 /// The same of a minimum and of the misfits that were simulated with it.
 Acceptance testProbed(const ProbedMisfit& minimum);
 
-/// Where a misfit is held against its linear model, in standard deviations.
-inline constexpr double kTestReach = 2.0;
+/// Where a misfit is held against its linear model, in standard deviations, and at least, beside bounds.
+inline constexpr double kTestReach = 2.0, kMinTestReach = 0.5;
 
 }  // namespace twinmap

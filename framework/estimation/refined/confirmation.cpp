@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
@@ -14,8 +15,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kMinReach = 1.0, kMaxReach = 3.0;  // what is taken for kTestReach
-
 /// Along the eigenvectors of a covariance, two standard deviations or as far as the limits allow on both
 /// sides; nothing where that is too short.
 std::optional<MatrixXd> makeWays(const SearchBox& box, const VectorXd& at, const MatrixXd& covariance) {
@@ -24,7 +23,7 @@ std::optional<MatrixXd> makeWays(const SearchBox& box, const VectorXd& at, const
   for (Index i = 0; i < ways.cols(); ++i) {
     const double reach =
         std::min(box.calcReach(at, ways.col(i), kTestReach), box.calcReach(at, -ways.col(i), kTestReach));
-    if (reach < kMinReach) {
+    if (reach < kMinTestReach) {
       return std::nullopt;
     }
     ways.col(i) *= reach;
@@ -38,17 +37,15 @@ bool isRightlyScaled(const ProbedMisfit& probed) {
   const MatrixXd hessian = probed.local.calcHessian();
   const Eigen::ArrayXd reach =
       (probed.ways.array() * (hessian * probed.ways).array()).colwise().sum().sqrt().transpose();
-  return reach.minCoeff() >= kMinReach && reach.maxCoeff() <= kMaxReach;
+  return reach.minCoeff() >= kMinTestReach && reach.maxCoeff() <= kBasinReach;
 }
 
 }  // namespace
 
 std::optional<SearchEnd> confirm(Misfit& misfit, const VectorXd& start, MatrixXd covariance) {
-  constexpr int kPoints = 4;
-  constexpr double kFarthest = 8.0;  // standard deviations: the map is wrong, and not the linear model for it
   SearchEnd end;
   VectorXd at = start;
-  for (double misfit_before = std::numeric_limits<double>::infinity(); end.iterations < kPoints;) {
+  for (double misfit_before = std::numeric_limits<double>::infinity(); end.iterations < kFewIterations;) {
     ++end.iterations;
     const std::optional<MatrixXd> ways = makeWays(misfit.getBox(), at, covariance);
     if (!ways) {
@@ -64,9 +61,6 @@ std::optional<SearchEnd> confirm(Misfit& misfit, const VectorXd& start, MatrixXd
       end.rest = newton.step;
       end.converged = testProbed(probed).status == RefinementStatus::kAccepted;
       return end.converged ? std::optional(end) : std::nullopt;
-    }
-    if (newton.length > kFarthest) {
-      return std::nullopt;
     }
     misfit_before = probed.local.misfit;
     covariance = probed.local.calcCovariance();

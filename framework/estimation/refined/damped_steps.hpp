@@ -31,8 +31,7 @@ struct StepBounds {
 /// held.
 class DampedSteps {
  public:
-  explicit DampedSteps(StepBounds bounds, double first_damping = 1e-2)
-      : bounds_(std::move(bounds)), damping_(first_damping) {}
+  explicit DampedSteps(StepBounds bounds) : bounds_(std::move(bounds)) {}
 
   const StepBounds& getBounds() const { return bounds_; }
   /// The step without damping, within the bounds: coordinates that it would take beyond them end there, and
@@ -53,7 +52,7 @@ class DampedSteps {
   Eigen::VectorXd calcStep(const LinearModel& from, double damping) const;
 
   StepBounds bounds_;
-  double damping_;
+  double damping_ = 1e-2;
   bool linear_ = false;  // whether the last step gained what the linear model said
 };
 

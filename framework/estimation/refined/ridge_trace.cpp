@@ -21,7 +21,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kSettledAcross = 0.1;    // standard deviations across: adds 1 % to chi-square of a degree
 constexpr std::size_t kMostPieces = 192;  // pieces, and those under way
 
 Index countFlat(const LocalMisfit& minimum) {
@@ -89,7 +88,7 @@ class RidgeWalk {
     VectorXd end;   ///< where it leads to
     double length;  ///< standard deviations
 
-    bool isSettled() const { return length < kSettledAcross; }
+    bool isSettled() const { return length < kImmaterial; }
   };
 
   /// All pieces of a ridge that is straight between its ends, as that of a sum is: the middle, both ends and
@@ -145,7 +144,7 @@ class RidgeWalk {
     }
     const VectorXd turned = across_.transpose() * (middle.tangent - section.tangent);
     const double way = (end.at - middle.local.at).dot(along_);
-    return std::abs(way) * std::sqrt(turned.dot(section.information * turned)) < kSettledAcross &&
+    return std::abs(way) * std::sqrt(turned.dot(section.information * turned)) < kImmaterial &&
            std::abs(section.log_height - middle.log_height) < kAlike;
   }
 
@@ -349,7 +348,7 @@ RidgeTrace summarize(const std::vector<RidgePiece>& pieces) {
   trace.factors = {MatrixXd::Constant(s, 1, kNormal50), MatrixXd::Constant(s, 1, kNormal95)};
   for (Index j = 0; j < s; ++j) {
     const VectorXd moved = trace.pieces.means.row(j).transpose().array() - trace.mean[j];
-    if (moved.cwiseAbs().maxCoeff() > kSettledAcross * trace.stddev[j]) {
+    if (moved.cwiseAbs().maxCoeff() > kImmaterial * trace.stddev[j]) {
       trace.factors.set(j, 0, calcFactor(pieces, trace.pieces.weights, j, trace.mean[j], trace.stddev[j]));
     }
   }

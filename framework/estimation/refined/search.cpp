@@ -16,10 +16,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kFirstDamping = 1e-3;  // from a map's answer nearly a Gauss-Newton step
-constexpr double kLongestStep = 0.3;    // half-widths
-constexpr double kBeyondLimit = 1.0;    // as kConverged, where the limits of the box stop it
-constexpr double kHidden = 0.3;         // the same where the misfit is too rough to go on: adds 4 %
+constexpr double kBeyondLimit = 1.0;  // as kConverged, where the limits of the box stop it
+constexpr double kHidden = 0.3;       // the same where the misfit is too rough to go on: adds 4 %
 
 /// One iteration: true if it moves to a better point, with derivatives at all that are tried, or, where that
 /// costs more, at the best alone.
@@ -52,7 +50,7 @@ bool improve(Misfit& misfit, LocalMisfit& local, DampedSteps& steps) {
 }
 
 StepBounds getLimits(const SearchBox& box) {
-  return {box.getLower(), box.getUpper(), {}, kLongestStep};
+  return {box.getLower(), box.getUpper()};
 }
 
 /// How far the step goes where the limits do not stop it, in standard deviations.
@@ -78,7 +76,7 @@ SearchEnd search(Misfit& misfit, const VectorXd& start, int max_iterations) {
     end.message = end.local.status.reason;
     return end;
   }
-  DampedSteps steps(getLimits(misfit.getBox()), kFirstDamping);
+  DampedSteps steps(getLimits(misfit.getBox()));
   NewtonStep newton = calcNewtonStep(end.local, misfit.getBox());
   while (!(newton.length < kConverged) && end.iterations < max_iterations && !steps.areExhausted()) {
     ++end.iterations;

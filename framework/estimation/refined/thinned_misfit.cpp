@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 
 namespace twinmap {
@@ -58,8 +59,7 @@ VectorXd ThinnedMisfit::evaluate(const MatrixXd& points) {
 }
 
 VectorXd chooseTimes(const ResponseLayout& layout, Index features, Index unknown) {
-  constexpr Index kSamplesOfEach = 6;
-  const Index every = features / std::max<Index>(1, kSamplesOfEach * unknown);
+  const Index every = features / std::max<Index>(1, kPerUnknown * unknown);
   if (every < 2) {
     return {};
   }

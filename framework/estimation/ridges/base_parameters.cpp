@@ -59,13 +59,13 @@ std::vector<Wish> listNumbers(const BodySpec& body) {
          enclose(moments[static_cast<std::size_t>(i)]) + " + " + m + "*(" + a + "^2 + " + b + "^2)",
          "kg m2"});
   }
-  constexpr int kPairs[][2] = {{0, 1}, {0, 2}, {1, 2}};
-  for (int k = 0; k < 3; ++k) {
-    const auto [i, j] = kPairs[k];
-    numbers.push_back(
-        {label + "I" + axes[i] + axes[j],
-         enclose(body.inertia.products[static_cast<std::size_t>(k)]) + " - " + m + "*" + c[i] + "*" + c[j],
-         "kg m2"});
+  for (int i = 0, k = 0; i < 3; ++i) {
+    for (int j = i + 1; j < 3; ++j, ++k) {
+      numbers.push_back(
+          {label + "I" + axes[i] + axes[j],
+           enclose(body.inertia.products[static_cast<std::size_t>(k)]) + " - " + m + "*" + c[i] + "*" + c[j],
+           "kg m2"});
+    }
   }
   return numbers;
 }
@@ -156,7 +156,7 @@ std::vector<Index> pickDetermined(MatrixXd left) {
 /// Sums of the determined terms with what the others add to them. sizes: of the terms' gradients.
 std::vector<BaseParameter> makeSums(const MatrixXd& information, const std::vector<Index>& determined,
                                     const VectorXd& sizes) {
-  constexpr double kMatters = 0.1;  // of the sum's sd, by which half of the bounds of a term move it
+  // half of the bounds of a term that is named moves the sum
   const MatrixXd own = information(determined, determined);
   MatrixXd covariance(own.rows(), own.cols());
   for (Index k = 0; k < own.cols(); ++k) {
@@ -169,7 +169,7 @@ std::vector<BaseParameter> makeSums(const MatrixXd& information, const std::vect
     BaseParameter sum{{{first, 1.0}}};
     for (Index k = 0; k < information.cols(); ++k) {
       const bool is_determined = std::find(determined.begin(), determined.end(), k) != determined.end();
-      if (!is_determined && 0.5 * std::abs(added(b, k)) > kMatters * std::sqrt(covariance(b, b))) {
+      if (!is_determined && 0.5 * std::abs(added(b, k)) > kImmaterial * std::sqrt(covariance(b, b))) {
         sum.terms.emplace_back(k, added(b, k) * sizes[first] / sizes[k]);
       }
     }

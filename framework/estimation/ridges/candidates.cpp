@@ -89,9 +89,8 @@ double calcProductComplexity(const VectorXi& exponents) {
 
 /// One of 1, 2, 3, 4 and their inverses, where the number is near one; else its first three digits.
 double roundCoefficient(double value) {
-  constexpr double kNear = 0.01;
   for (const double simple : {1.0, 2.0, 0.5, 3.0, 1.0 / 3.0, 4.0, 0.25}) {
-    if (std::abs(std::abs(value) - simple) < kNear * simple) {
+    if (std::abs(std::abs(value) - simple) < kMattersInSum * simple) {
       return std::copysign(simple, value);
     }
   }

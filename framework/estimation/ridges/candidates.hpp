@@ -9,7 +9,7 @@ namespace twinmap {
 
 /// Residual of a function that is exact, but for rounding.
 constexpr double kExact = 1e-3;
-/// Of the largest term, what a sum is not written without.
+/// Of the largest term, what a sum is not written without, and of a coefficient, what is not rounded away.
 constexpr double kMattersInSum = 0.01;
 
 /// A function that may be identified, and how complicated it is to read.

@@ -170,7 +170,6 @@ std::string makeExpression(const Combination& combination, const std::vector<Par
 }
 
 std::string makeName(const Combination& combination, const std::vector<ParameterSpec>& parameters) {
-  constexpr std::size_t kLongest = 40;
   std::string name;
   for (std::size_t k = 0; k < combination.terms.size(); ++k) {
     name += (k == 0                              ? ""
@@ -178,7 +177,7 @@ std::string makeName(const Combination& combination, const std::vector<Parameter
                                                  : "_plus_") +
             makeNamePart(combination.terms[k], parameters);
   }
-  return name.size() <= kLongest ? name : "combination";
+  return name;
 }
 
 bool hasOneUnit(const Combination& combination, const std::vector<ParameterSpec>& parameters) {

@@ -33,7 +33,7 @@ Eigen::VectorXd calcGradient(const Combination& combination, const Eigen::Vector
 /// As an expression of the experiment file: "m * L", "k / m", "k_1 + 0.36 * k_2".
 std::string makeExpression(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
-/// A name for it: "m_L", "k_per_m", "k_1_plus_k_2"; of at most 40 characters, or "combination".
+/// A name for it: "m_L", "k_per_m", "k_1_plus_k_2".
 std::string makeName(const Combination& combination, const std::vector<ParameterSpec>& parameters);
 
 /// Whether its terms have one unit, or a parameter states none.

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "framework/base/text/nearest_name.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/ridges/candidates.hpp"
 #include "framework/estimation/ridges/local_sums.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -145,14 +146,13 @@ std::string describeBase(const Ridge& ridge) {
 /// of it.
 bool isAmong(const Combination& combination, const MatrixXd& gradients, const VectorXd& point,
              const VectorXd& widths) {
-  constexpr double kSame = 1e-6;  // central differences of a smooth function
   if (gradients.rows() == 0) {
     return false;  // nothing is derived, and there may be no point
   }
   const VectorXd own = calcGradient(combination, point).cwiseProduct(widths).normalized();
   for (Index q = 0; q < gradients.rows(); ++q) {
     const VectorXd other = widths.cwiseProduct(gradients.row(q).transpose());
-    if (std::abs(own.dot(other)) > (1.0 - kSame) * other.norm()) {
+    if (std::abs(own.dot(other)) > (1.0 - kSameNumber) * other.norm()) {
       return true;
     }
   }
@@ -183,7 +183,7 @@ std::vector<Ridge> findRidges(const std::vector<MatrixXd>& information, const Ma
                               const std::vector<ParameterSpec>& parameters, RidgePoints of) {
   std::vector<MatrixXd> looked_at;
   std::vector<Index> places;
-  for (std::size_t i = 0; i < information.size() && looked_at.size() < kMostPoints; ++i) {
+  for (std::size_t i = 0; i < information.size() && looked_at.size() < kStandingDraws; ++i) {
     if (information[i].size() > 0) {
       looked_at.push_back(information[i]);
       places.push_back(static_cast<Index>(i));

@@ -10,9 +10,6 @@
 
 namespace twinmap {
 
-/// So many points show a ridge as well as all.
-constexpr std::size_t kMostPoints = 32;
-
 /// Parameters of which the features determine combinations alone.
 struct Ridge {
   std::vector<Eigen::Index> parameters;  ///< g, ascending
@@ -42,7 +39,7 @@ std::vector<Ridge> nameRidges(const std::vector<FlatDirections>& flat,
                               const std::vector<ParameterSpec>& parameters,
                               RidgePoints of = RidgePoints::kOfAny);
 
-/// The same from the Fisher information at points (findFlatDirections()), of which at most kMostPoints are
+/// The same from the Fisher information at points (findFlatDirections()), of which at most kStandingDraws are
 /// looked at.
 std::vector<Ridge> findRidges(const std::vector<Eigen::MatrixXd>& information, const Eigen::MatrixXd& points,
                               const std::vector<ParameterSpec>& parameters,

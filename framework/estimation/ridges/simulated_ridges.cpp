@@ -5,6 +5,7 @@
 #include "framework/data/noise/noise_whitener.hpp"
 #include "framework/data/sensitivity/feature_sensitivities.hpp"
 #include "framework/data/sensitivity/fisher_information.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/sampling/weighted_draws.hpp"
 
@@ -39,7 +40,7 @@ bool mayHaveRidges(const BoundedDraws& draws, const std::vector<ParameterSpec>& 
 std::vector<Ridge> simulateRidges(const Simulator& simulator, const FeatureExtractor& extractor,
                                   const FeatureNoise& noise, const ModelSpec& model, const MatrixXd& points,
                                   int threads) {
-  const auto most = hasManyForNames(model) ? Index{1} : static_cast<Index>(kMostPoints);
+  const auto most = hasManyForNames(model) ? Index{1} : kStandingDraws;
   const MatrixXd chosen = points.leftCols(std::min(most, points.cols()));
   const auto p = static_cast<Index>(model.parameters.size());
   return findRidges(calcInformation(simulator, extractor, noise, model, chosen, threads), chosen.topRows(p),

@@ -97,9 +97,8 @@ std::vector<std::vector<Index>> listFolds(Index simulations) {
 
 HeldOut crossValidate(const Surrogate& whole, const SurrogateSamples& samples, const ForwardSamples& forward,
                       std::vector<ForwardSurrogate> folds, const TrainingControl& control) {
-  constexpr Index kColumns = 1000;  // enough for quantiles
   const Index n = samples.points.cols(), p = whole.parameters;
-  const Index draws = countDraws(n, std::min(samples.measured.cols(), kColumns));
+  const Index draws = countDraws(n, std::min<Index>(samples.measured.cols(), kManyErrors));
   const Index known = samples.points.rows() - whole.unknown;
   HeldOut held_out;
   held_out.predictions = {MatrixXd(p, n * draws), MatrixXd(p, n * draws), {}};

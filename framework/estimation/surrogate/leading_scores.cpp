@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/order.hpp"
 
 namespace twinmap {
@@ -24,11 +25,10 @@ std::vector<Index> rankSimulations(const ForwardSurrogate& surrogate,
 }
 
 LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown) {
-  constexpr Index kScoresPerUnknown = 5;
   const ArrayXd weights = calcRoughWeights(surrogate);
   const ArrayXd said = surrogate.scores.rowwise().squaredNorm().array() * weights.square();
   std::vector<double> order(said.data(), said.data() + said.size());
-  const Index kept = std::min<Index>(said.size(), kScoresPerUnknown * unknown);
+  const Index kept = std::min<Index>(said.size(), kPerUnknown * unknown);
   std::nth_element(order.begin(), order.begin() + (kept - 1), order.end(), std::greater<>());
   const double least = order[static_cast<std::size_t>(kept - 1)];
   LeadingScores leading{ArrayXd::Zero(said.size()), {}};

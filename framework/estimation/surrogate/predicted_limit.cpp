@@ -1,5 +1,6 @@
 #include "framework/estimation/surrogate/predicted_limit.hpp"
 
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -32,12 +33,11 @@ VectorXd calcScoreLimit(const MatrixXd& information, const BoxPrior& prior) {
 
 VectorXd calcLimitScale(const ForwardSurrogate& surrogate, const ForwardSamples& samples,
                         const BoxPrior& prior) {
-  constexpr int kMax = 64;  // both means vary alike over the box, so that few suffice for their ratio
   const NoiseWhitener noise(samples.noise_covariance);
   const Index unknown = prior.count();
   VectorXd of_simulator = VectorXd::Zero(unknown), of_scores = VectorXd::Zero(unknown);
   int count = 0;
-  for (std::size_t i = 0; i < samples.slopes.size() && count < kMax; ++i) {
+  for (std::size_t i = 0; i < samples.slopes.size() && count < kStandingDraws; ++i) {
     if (samples.slopes[i].size() > 0) {
       const MatrixXd slopes = noise.apply(samples.slopes[i]);
       const VectorXd point = samples.points.col(static_cast<Index>(i));

@@ -18,6 +18,9 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double kSamePlace =
+    0.05;  // half widths: nearer searches are of one minimum, as errors vary over tenths
+
 int size(const VectorXd& vector) {
   return static_cast<int>(vector.size());
 }
@@ -222,14 +225,10 @@ void ScoreInversion::updateMetric(const VectorXd& unknown, Metric& metric) {
 }
 
 std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::vector<VectorXd>& starts) {
-  constexpr int kFirstSteps = 3, kSteps = 12;
-  constexpr int kWithAllScores = 2;                  // after which the better metric moves little
-  constexpr double kOnTheWay = 0.15, kApart = 0.05;  // in half widths, after the first steps and at the end
-  constexpr double kHopeless = 30.0;                 // e^-15 of the evidence, and errors of the rough metric
   std::vector<Minimum> minima;
-  const auto is_apart = [&](const VectorXd& point, double distance) {
+  const auto is_apart = [&](const VectorXd& point) {
     return std::all_of(minima.begin(), minima.end(), [&](const Minimum& other) {
-      return (other.point - point).cwiseAbs().maxCoeff() > distance;
+      return (other.point - point).cwiseAbs().maxCoeff() > kSamePlace;
     });
   };
   for (const VectorXd& start : starts) {
@@ -237,24 +236,23 @@ std::vector<ScoreInversion::Minimum> ScoreInversion::searchRoughly(const std::ve
     minimum.point = start;
     Descent descent{calcObjective(leading_, minimum.point)};
     bool moves = true, apart = true;
-    for (int i = 0; i < kSteps && moves && apart; ++i) {
-      const double distance = i < kFirstSteps ? kOnTheWay : kApart;
+    for (int i = 0; i < kFewIterations && moves && apart; ++i) {
       makeNormalEquations(leading_);
       moves = predictGain(minimum.point) >= kLastGain;
-      apart = is_apart(minimum.point + step_, distance);  // before the step, which costs an evaluation
+      apart = is_apart(minimum.point + step_);  // before the step, which costs an evaluation
       if (moves && apart) {
         moves = moveOn(leading_, minimum.point, descent);
-        apart = is_apart(minimum.point, distance);
+        apart = is_apart(minimum.point);
       }
     }
     if (apart) {
-      minimum.objective = improve(rough_, kWithAllScores, minimum.point);
+      minimum.objective = calcObjective(rough_, minimum.point);
       minima.push_back(minimum);
     }
   }
   std::stable_sort(minima.begin(), minima.end(),
                    [](const Minimum& a, const Minimum& b) { return a.objective < b.objective; });
-  const double worst = minima.front().objective + kHopeless;
+  const double worst = minima.front().objective + kBasinAbove;
   while (minima.back().objective > worst) {
     minima.pop_back();
   }
@@ -286,21 +284,19 @@ bool ScoreInversion::widen(const Metric& metric, const VectorXd& unknown) {
 
 /// `may_widen`: where a measurement is to be explained at any cost, not where it is to be judged.
 void ScoreInversion::refine(Minimum& minimum, bool may_widen) {
-  constexpr int kFirstSteps = 5, kLastSteps = 3, kMaxWidenings = 4;
-  constexpr double kStays = 0.01;  // in half widths: errors vary over some tenths
   std::fill(widening_.begin(), widening_.end(), 1.0);
   Metric metric;
   const VectorXd before = minimum.point;
   updateMetric(before, metric);
-  minimum.objective = improve(metric, kFirstSteps, minimum.point);
-  if ((minimum.point - before).cwiseAbs().maxCoeff() > kStays) {
+  minimum.objective = improve(metric, kFewIterations, minimum.point);
+  if ((minimum.point - before).cwiseAbs().maxCoeff() > kSamePlace) {
     updateMetric(minimum.point, metric);
-    minimum.objective = improve(metric, kLastSteps, minimum.point);
+    minimum.objective = improve(metric, kFewIterations, minimum.point);
   }
   minimum.residual = residual_;
-  for (int i = 0; may_widen && i < kMaxWidenings && widen(metric, minimum.point); ++i) {
+  for (int i = 0; may_widen && i < kFewIterations && widen(metric, minimum.point); ++i) {
     updateMetric(minimum.point, metric);
-    minimum.objective = improve(metric, kFirstSteps, minimum.point);
+    minimum.objective = improve(metric, kFewIterations, minimum.point);
     minimum.widened = true;
   }
   minimum.widening = widening_;
@@ -343,10 +339,9 @@ void ScoreInversion::keepModes(const std::vector<Minimum>& minima, const std::ve
 
 /// Whether the better metric made a minimum one with an earlier one.
 bool ScoreInversion::hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index) {
-  constexpr double kSame = 0.02;  // in half widths
   return std::any_of(minima.begin(), minima.begin() + static_cast<std::ptrdiff_t>(index),
                      [&](const Minimum& other) {
-                       return (other.point - minima[index].point).cwiseAbs().maxCoeff() < kSame;
+                       return (other.point - minima[index].point).cwiseAbs().maxCoeff() < kSamePlace;
                      });
 }
 

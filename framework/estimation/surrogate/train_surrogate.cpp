@@ -44,29 +44,18 @@ SurrogateSamples takeFirst(const SurrogateSamples& samples) {
   return first;
 }
 
-/// By how much the sd that suffers most was enlarged.
-const char* adviseOnRescaled(double largest) {
-  constexpr double kMuch = 2.0;  // as good as three quarters of the measurement lost
-  return largest < kMuch
-             ? "Nothing need be done; the run's test samples say whether the enlarged intervals hold."
-             : "Refine the estimates on the simulator: refine=always.";
-}
-
 std::vector<std::string> listWarnings(const ModelSpec& model, const SurrogateValidation& validation) {
   constexpr double kCalibrated = 0.9;
   std::vector<std::string> warnings, told;
-  double largest = 1.0;
   for (Index k = 0; k < validation.coverage95.size(); ++k) {
     if (validation.coverage95(k) < kCalibrated) {
-      largest = std::max(largest, validation.stddev_scale(k));
       told.push_back(fmt::format("{} ({:.0f} % contained, sd enlarged by {:.2f})",
                                  model.parameters[static_cast<std::size_t>(k)].name.text,
                                  100.0 * validation.coverage95(k), validation.stddev_scale(k)));
     }
   }
   if (!told.empty()) {
-    warnings.push_back(
-        describeNotice(Notice::kSurrogateRescaled, listNames(told), adviseOnRescaled(largest)));
+    warnings.push_back(describeNotice(Notice::kSurrogateRescaled, listNames(told)));
   }
   if (validation.status == SurrogateStatus::kEstimatorLimited) {
     warnings.push_back(describeNotice(Notice::kSurrogateUncalibrated));
@@ -136,13 +125,12 @@ VectorXd calcMeanErrors(const MatrixXd& mean, const MatrixXd& truth) {
 SimulationGain calcSimulationGain(const Surrogate& whole, const SurrogateSamples& samples,
                                   const ForwardSamples& forward, const ForwardChoices& choices,
                                   const HeldOut& held_out, const TrainingControl& control) {
-  constexpr Index kMaxInferred = 200;
   const Index n = samples.points.cols(), half = n / 2, known = samples.points.rows() - whole.unknown;
   if (half < countLeastSimulations(samples.points.rows())) {
     return {};
   }
   const Surrogate fitted = fitSimilar(whole, selectSimulations(forward, listIndices(half)), choices, control);
-  const std::vector<Index> others = listIndices(std::min(n - half, kMaxInferred), half);
+  const std::vector<Index> others = listIndices(n - half, half);
   const MatrixXd inputs = samples.points(Eigen::all, others).bottomRows(known);
   const Estimates found = fitted.invert(samples.measured(Eigen::all, others), inputs, control.threads);
   gp::throwIfStopped(control.stop);

@@ -125,6 +125,9 @@ static double predicted_gain(twinmap_state *state, const double *unknown)
   return gain;
 }
 
+static const double same_place = 0.05;  /* half widths: nearer searches are of one minimum, as errors vary over tenths */
+static const double basin_above = 25.0; /* of chi-square: a share of 4e-6 */
+static const int few_iterations = 8;    /* where searches end by least_gain, mostly */
 static const double least_gain = 0.01; /* a step of a tenth of a standard deviation: the linear model tells the rest */
 
 /* A step that would gain something; 0 where it did not. */
@@ -180,11 +183,11 @@ static void update_metric(twinmap_state *state, const double *unknown)
   state->log_determinant = calc_log_determinant(R, lower);
 }
 
-static int is_apart(const twinmap_state *state, int count, const double *point, double distance)
+static int is_apart(const twinmap_state *state, int count, const double *point)
 {
   int i;
   for (i = 0; i < count; ++i) {
-    if (!(largest_difference(U, state->minima[i].point, point) > distance)) {
+    if (!(largest_difference(U, state->minima[i].point, point) > same_place)) {
       return 0;
     }
   }
@@ -194,8 +197,6 @@ static int is_apart(const twinmap_state *state, int count, const double *point, 
 /* Minima of the rough objective from starts (U numbers each), distinct, the best first. */
 static void search_roughly(twinmap_state *state, int starts, const double *start)
 {
-  const double on_the_way = 0.15, apart = 0.05; /* in half widths, after the first steps and at the end */
-  const double hopeless = 30.0;                 /* e^-15 of the evidence, and errors of the rough metric */
   double point[U];
   int count = 0, s, i, v;
   for (s = 0; s < starts; ++s) {
@@ -203,23 +204,22 @@ static void search_roughly(twinmap_state *state, int starts, const double *start
     int moves = 1, alone = 1;
     memcpy(point, start + s * U, sizeof point);
     objective = calc_objective(state, METRIC_LEADING, point);
-    for (i = 0; i < 12 && moves && alone; ++i) {
-      const double distance = i < 3 ? on_the_way : apart;
+    for (i = 0; i < few_iterations && moves && alone; ++i) {
       make_normal_equations(state, METRIC_LEADING);
       moves = predicted_gain(state, point) >= least_gain;
       for (v = 0; v < U; ++v) {
         state->trial[v] = point[v] + state->step[v];
       }
-      alone = is_apart(state, count, state->trial, distance); /* before the step, which costs an evaluation */
+      alone = is_apart(state, count, state->trial); /* before the step, which costs an evaluation */
       if (moves && alone) {
         moves = move_on(state, METRIC_LEADING, point, &objective, &damping);
-        alone = is_apart(state, count, point, distance);
+        alone = is_apart(state, count, point);
       }
     }
     if (!alone) {
       continue;
     }
-    objective = improve(state, METRIC_ROUGH, 2, point); /* after which the better metric moves little */
+    objective = calc_objective(state, METRIC_ROUGH, point);
     for (i = count++; i > 0 && objective < state->minima[i - 1].objective; --i) {
       memcpy(state->minima[i].point, state->minima[i - 1].point, sizeof point);
       state->minima[i].objective = state->minima[i - 1].objective;
@@ -227,7 +227,7 @@ static void search_roughly(twinmap_state *state, int starts, const double *start
     memcpy(state->minima[i].point, point, sizeof point);
     state->minima[i].objective = objective;
   }
-  while (state->minima[count - 1].objective > state->minima[0].objective + hopeless) {
+  while (state->minima[count - 1].objective > state->minima[0].objective + basin_above) {
     --count;
   }
   state->minimum_count = count;
@@ -289,7 +289,6 @@ static int widen(twinmap_state *state, const double *unknown)
    objective with its evidence. */
 static void refine_minimum(twinmap_state *state, int index, int may_widen)
 {
-  const double stays = 0.01; /* in half widths: errors vary over some tenths */
   double *point = state->minima[index].point, before[U], objective;
   int i, v, a, w;
   for (w = 0; w < TWINMAP_WINDOWS; ++w) {
@@ -297,16 +296,16 @@ static void refine_minimum(twinmap_state *state, int index, int may_widen)
   }
   memcpy(before, point, sizeof before);
   update_metric(state, point);
-  objective = improve(state, METRIC_FULL, 5, point);
-  if (largest_difference(U, point, before) > stays) {
+  objective = improve(state, METRIC_FULL, few_iterations, point);
+  if (largest_difference(U, point, before) > same_place) {
     update_metric(state, point);
-    objective = improve(state, METRIC_FULL, 3, point);
+    objective = improve(state, METRIC_FULL, few_iterations, point);
   }
   memcpy(state->minima[index].innovation, state->residual, sizeof state->innovation);
   state->minima[index].widened = 0;
-  for (i = 0; may_widen && i < 4 && widen(state, point); ++i) {
+  for (i = 0; may_widen && i < few_iterations && widen(state, point); ++i) {
     update_metric(state, point);
-    objective = improve(state, METRIC_FULL, 5, point);
+    objective = improve(state, METRIC_FULL, few_iterations, point);
     state->minima[index].widened = 1;
   }
   make_normal_equations(state, METRIC_FULL);

@@ -4,10 +4,9 @@
 /* Whether the full metric made a minimum one with an earlier one. */
 static int has_earlier_twin(const twinmap_state *state, int index)
 {
-  const double same = 0.02; /* in half widths */
   int i;
   for (i = 0; i < index; ++i) {
-    if (largest_difference(U, state->minima[i].point, state->minima[index].point) < same) {
+    if (largest_difference(U, state->minima[i].point, state->minima[index].point) < same_place) {
       return 1;
     }
   }

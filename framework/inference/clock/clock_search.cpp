@@ -49,8 +49,8 @@ SlipPlace scanSlips(const VectorXd& residual, const MatrixXd& jacobian, const Ve
     shared += late[i] * jacobian.row(i).transpose();
     if (get_time(order[k + 1]) < get_time(i)) {
       const double own = squares - linalg::solveLower(lower, shared).squaredNorm();
-      constexpr double kLeast = 1e-6;  // of its squares: else the parameters explain it
-      const double gain = own > kLeast * squares ? slope * slope / own : 0.0;
+      // else the parameters explain it
+      const double gain = own > kSameNumber * squares ? slope * slope / own : 0.0;
       best = gain > best.gain ? SlipPlace{get_time(i), gain} : best;
     }
   }

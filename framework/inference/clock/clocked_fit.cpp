@@ -113,14 +113,12 @@ ClockedFit linearizeClocked(const RecordedSamples& recorded, const VectorXd& poi
 
 ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
                     const std::vector<ClockFault>& faults) {
-  constexpr int kMaxSteps = 12, kHalvings = 5;
-  constexpr double kConverged = 1e-5;  // of the misfit: of a thousand samples a hundredth of a unit
   ClockedFit fit{point, faults, {}, {}, 0.0, {}};
   Linearized at = linearize(recorded, point, faults);
   if (!at.local.status.ok) {
     return {};
   }
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kFewIterations; ++step) {
     const Eigen::MatrixXd lower = linalg::calcCholesky(at.local.calcHessian()).lower;
     const VectorXd way = linalg::solveCholesky(lower, at.local.descent).cwiseProduct(at.half_widths);
     const double before = at.local.misfit;
@@ -128,7 +126,7 @@ ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
       return {};  // of a misfit beyond numbers
     }
     double share = 1.0;
-    for (int halving = 0; halving < kHalvings; ++halving, share *= 0.5) {
+    for (int halving = 0; halving < kFewIterations; ++halving, share *= 0.5) {
       ClockedFit next = fit;
       next.point += share * way.head(point.size());
       const std::vector<ParameterSpec> unknown = collectUnknown(recorded.experiment.model);
@@ -148,7 +146,7 @@ ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
     }
     const bool is_gross =
         recorded.noise.outputs.empty() && isGross(at.local.misfit, static_cast<double>(at.local.residuals));
-    if (before - at.local.misfit <= (is_gross ? kCreeping : kConverged) * before) {
+    if (before - at.local.misfit <= (is_gross ? kCreeping * before : kLastGain)) {
       break;
     }
   }

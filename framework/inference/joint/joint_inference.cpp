@@ -146,9 +146,8 @@ ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs
   if (stated > degrees) {
     const auto excess = [&](double variance) { return calcSpread(variance) - degrees; };
     const double all = (values.array() - values.mean()).square().sum();
-    constexpr int kBits = 30;
     const auto [low, high] =
-        boost::math::tools::bisect(excess, 0.0, all, boost::math::tools::eps_tolerance<double>(kBits));
+        boost::math::tools::bisect(excess, 0.0, all, boost::math::tools::eps_tolerance<double>());
     estimate.scatter = std::sqrt(0.5 * (low + high));
   }
   const double spread = calcSpread(estimate.scatter * estimate.scatter) / degrees;

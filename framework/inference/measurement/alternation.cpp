@@ -6,6 +6,7 @@
 
 #include "framework/base/text/number_text.hpp"
 #include "framework/data/measurement/lagrange.hpp"
+#include "framework/estimation/levels.hpp"
 
 namespace twinmap {
 namespace {
@@ -27,16 +28,14 @@ std::vector<double> listHeights(const VectorXd& times, const VectorXd& values) {
 
 /// By how much each second sample is off; 0 where that is not what it is.
 double calcAlternation(const VectorXd& times, const VectorXd& values) {
-  constexpr std::size_t kFewest = 10;
-  constexpr double kClear = 3.0;
-  const std::vector<double> heights = listHeights(times, values);
-  if (heights.size() < kFewest) {
+  if (values.size() < kFewestTested) {
     return 0.0;
   }
+  const std::vector<double> heights = listHeights(times, values);
   const Eigen::Map<const VectorXd> all(heights.data(), static_cast<Index>(heights.size()));
   const double mean = all.mean();
   const double stddev = std::sqrt((all.array() - mean).square().mean());
-  return std::abs(mean) > kClear * stddev && mean != 0.0 ? mean : 0.0;
+  return std::abs(mean) > kBasinReach * stddev && mean != 0.0 ? mean : 0.0;
 }
 
 }  // namespace

@@ -81,8 +81,7 @@ void divideByFoundNoise(const LinearizedMeasurement& local, const FeatureExtract
 
 double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extractor,
                      const Eigen::MatrixXd& responses, const SimulatorFit& fit) {
-  constexpr double kLargest = 30.0;                             // more is another signal
-  constexpr double kNamed = kRareDeviations * kRareDeviations;  // of chi-square of one degree
+  constexpr double kLargest = 30.0;  // more is another signal
   const auto rows = static_cast<Eigen::Index>(local.features.size());
   if (responses.cols() == 0 || local.residual.size() != rows) {
     return 0.0;
@@ -93,7 +92,7 @@ double findNoiseSize(LinearizedMeasurement local, const FeatureExtractor& extrac
   divideByFoundNoise(local, extractor, fit, features);
   const std::optional<InputNoise> noise = findInputNoise(local.residual, local.jacobian, features, kLargest);
   const auto degrees = static_cast<double>(rows - local.jacobian.cols());
-  return noise && noise->gain > kNamed &&
+  return noise && noise->gain > kRareDeviations * kRareDeviations &&
                  noise->chi_square < degrees + kRareDeviations * std::sqrt(2.0 * degrees)
              ? noise->size
              : 0.0;

@@ -121,7 +121,6 @@ class Supposing {
 
 std::optional<ExperimentSpec> supposeInput(const MeasurementReader& reader, AvailableFeatures& found,
                                            const VectorXd& known, SimulatorPosteriorOptions options) {
-  constexpr int kTimes = 3;  // what the first moves by much, the others move by little
   if (!hasUnknownExcitation(reader.getExperiment().model) || !areSamples(reader.getExperiment().features)) {
     return std::nullopt;
   }
@@ -130,7 +129,7 @@ std::optional<ExperimentSpec> supposeInput(const MeasurementReader& reader, Avai
     return false;
   };  // the best fit is all that is asked for
   Supposing supposing(reader, found, known, options);
-  for (int i = 0; i < kTimes; ++i) {
+  for (int i = 0; i < kTimesCounted; ++i) {
     if (!supposing.improve()) {
       return std::nullopt;
     }

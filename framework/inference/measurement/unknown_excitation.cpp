@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/simulation/team_simulator.hpp"
 
@@ -173,7 +174,6 @@ bool hasUnknownExcitation(const ModelSpec& model) {
 }
 
 MatrixXd calcUnknownResponses(const ModelSpec& model, const ResponseLayout& layout, const VectorXd& point) {
-  constexpr double kStep = 0.1;          // standard deviations: about a point where responses bend
   constexpr std::size_t kTogether = 16;  // of which each step looks up the tables of all
   const std::optional<VectorXd> usual = simulate(model, layout, point).front();
   const std::vector<Unknown> unknowns = usual ? listEach(model) : std::vector<Unknown>();
@@ -183,11 +183,11 @@ MatrixXd calcUnknownResponses(const ModelSpec& model, const ResponseLayout& layo
         unknowns.begin() + static_cast<std::ptrdiff_t>(first),
         unknowns.begin() + static_cast<std::ptrdiff_t>(std::min(first + kTogether, unknowns.size())));
     const std::vector<std::optional<VectorXd>> changed =
-        model.source ? simulateEachChanged(model, layout, point, some, kStep)
-                     : simulateChanged(model, layout, point, some, kStep);
+        model.source ? simulateEachChanged(model, layout, point, some, kImmaterial)
+                     : simulateChanged(model, layout, point, some, kImmaterial);
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (changed[i]) {
-        responses.col(static_cast<Index>(first + i)) = (*changed[i] - *usual) / kStep;
+        responses.col(static_cast<Index>(first + i)) = (*changed[i] - *usual) / kImmaterial;
       }
     }
   }

@@ -13,6 +13,9 @@ namespace twinmap {
 /// Samples behind which a spline has forgotten all but 1e-7.
 constexpr std::size_t kSplineReach = 12;
 
+/// So often what is unknown is counted at a fit, which it moves: the first time by much, then by little.
+constexpr int kTimesCounted = 3;
+
 /// Whether something of a measured excitation is not known: samples that were lost (TableSpec::unknown), or
 /// the noise of those that are there (MeasuredSignalSpec::noise).
 bool hasUnknownExcitation(const ModelSpec& model);

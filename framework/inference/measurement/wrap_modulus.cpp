@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/data/measurement/time_series.hpp"
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/order.hpp"
 
 namespace twinmap {
@@ -38,7 +39,6 @@ VectorXd calcFourthDifferences(const VectorXd& values) {
 /// Least squares of the fourth differences over the modulus, for the turns that the last one makes. They
 /// begin with the range, a little less than the modulus.
 double findBySmoothness(const VectorXd& times, const VectorXd& values) {
-  constexpr int kIterations = 3;
   constexpr double kHalf = 0.5, kFarthest = 2.0;
   // of what jumps at random, over the modulus: second differences are within half of it, evenly, and theirs
   // follow
@@ -47,7 +47,7 @@ double findBySmoothness(const VectorXd& times, const VectorXd& values) {
   const VectorXd measured = calcFourthDifferences(values);
   double modulus = range;
   VectorXd continued = measured;
-  for (int i = 0; i < kIterations; ++i) {
+  for (int i = 0; i < kFewIterations; ++i) {
     const VectorXd turns = ((unwrap(times, values, modulus) - values) / modulus).array().round();
     const VectorXd bends = calcFourthDifferences(turns);
     modulus = -bends.dot(measured) / bends.squaredNorm();
@@ -63,8 +63,7 @@ double findBySmoothness(const VectorXd& times, const VectorXd& values) {
 }  // namespace
 
 double findModulus(const VectorXd& times, const VectorXd& values) {
-  constexpr Index kFewest = 8;
-  if (values.size() < kFewest || !values.allFinite() || values.minCoeff() == values.maxCoeff()) {
+  if (values.size() < kFewestTested || !values.allFinite() || values.minCoeff() == values.maxCoeff()) {
     return 0.0;
   }
   const double by_size = findBySize(values);

@@ -208,11 +208,10 @@ bool countUnknownExcitation(const VectorXd& best, PreparedSegments& prepared) {
 }
 
 SimulatorPosterior sample(PreparedSegments& prepared, const SimulatorPosteriorOptions& options) {
-  constexpr int kTimes = 2;  // what the first moves by much, the second moves by little
   const MatrixXd none(prepared.recording->unknown.size(), 0);
   SimulatorPosterior posterior = samplePosterior(makeProblem(prepared), none, options);
   const bool is_unknown = hasUnknownExcitation(prepared.experiment.model);
-  for (int i = 0; is_unknown && i < kTimes && posterior.best.size() > 0; ++i) {
+  for (int i = 0; is_unknown && i < kTimesCounted && posterior.best.size() > 0; ++i) {
     const VectorXd best = posterior.best;
     if (!countUnknownExcitation(best, prepared)) {
       break;

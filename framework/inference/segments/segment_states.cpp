@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/segments/segmented_recording.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/start_readings.hpp"
@@ -16,10 +17,8 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Samples of a straight line: enough against noise, few enough for what moves fast.
-constexpr Index kLine = 8;
-
-/// Value and slope of a quantity where samples begin; NaN where too few are there.
+/// Value and slope of a quantity where a few samples begin, few enough for what moves fast; NaN where too few
+/// are there.
 struct Line {
   double value = std::nan(""), slope = std::nan("");
 };
@@ -96,8 +95,9 @@ class Guesser {
     std::vector<double> all;  // along the segments too: how far the state goes
     for (Index k = 0; k < values.size(); ++k) {
       const auto samples = samples_[static_cast<std::size_t>(k)].col(reading.output);
-      for (Index first = 0; first < samples.size(); first += kLine) {
-        const Line line = fitLine(samples.segment(first, std::min(kLine, samples.size() - first)), interval_);
+      for (Index first = 0; first < samples.size(); first += 2 * kPerUnknown) {
+        const Line line =
+            fitLine(samples.segment(first, std::min(2 * kPerUnknown, samples.size() - first)), interval_);
         const double value = reading.read(line.value, line.slope);
         if (std::isfinite(value)) {
           all.push_back(value);

@@ -10,6 +10,7 @@
 #include "framework/base/text/number_text.hpp"
 #include "framework/base/text/text_tables.hpp"
 #include "framework/estimation/estimate.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/select_estimate.hpp"
 #include "framework/inference/stated_values.hpp"
@@ -59,10 +60,9 @@ std::vector<DerivedValue> dropDerived(const StatedValues& stated) {
   std::vector<DerivedValue> others;
   std::copy_if(stated.identified.begin(), stated.identified.end(), std::back_inserter(others),
                [&](const DerivedValue& one) {
-                 constexpr double kSame = 1e-9;  // of an sd: the same draws in another order
                  return std::none_of(stated.derived.begin(), stated.derived.end(),
                                      [&](const DerivedValue& derived) {
-                                       return std::abs(one.mean - derived.mean) <= kSame * one.stddev;
+                                       return std::abs(one.mean - derived.mean) <= kSameNumber * one.stddev;
                                      });
                });
   return others;
@@ -96,17 +96,14 @@ std::string describeRefined(const Refined& refined) {
     return fmt::format("  refinement rejected ({}): {}; unconfirmed quick estimate:\n",
                        toString(refined.status), refined.message);
   }
-  constexpr double kFar = 5.0;
-  return fmt::format(
-      "  refined in {} step{} ({} simulations), moved {:.2g} sd from the starting estimate{}:\n",
-      refined.iterations, refined.iterations == 1 ? "" : "s", refined.simulations, refined.distance,
-      refined.distance > kFar ? " (the quick estimate was poor; this is normal)" : "");
+  return fmt::format("  refined in {} step{} ({} simulations), moved {:.2g} sd from the starting estimate:\n",
+                     refined.iterations, refined.iterations == 1 ? "" : "s", refined.simulations,
+                     refined.distance);
 }
 
 /// The components of a mixture, with what would tell them apart where nothing else comes first.
 std::string describeMixture(const Mixture& mixture, const std::vector<ParameterSpec>& parameters,
                             bool misfits) {
-  constexpr double kMin = 0.01;  // a lighter one is not worth a line
   std::string text = "  multimodal, several parameter values may fit:\n";
   for (Index c = 0; c < mixture.countComponents(); ++c) {
     std::string values;
@@ -116,7 +113,7 @@ std::string describeMixture(const Mixture& mixture, const std::vector<ParameterS
                             toShortText(mixture.means(i, c), kEstimateDigits),
                             toShortText(mixture.stddevs(i, c), kStddevDigits));
     }
-    if (mixture.weights[c] > kMin) {
+    if (std::round(100.0 * mixture.weights[c]) > 0.0) {
       text += fmt::format("    {:3.0f} %: {}\n", 100.0 * mixture.weights[c], values);
     }
   }

@@ -63,10 +63,9 @@ std::string describeLevel(const Agreement& agreement) {
 
 std::string describeContradictions(const JointInference& inferred,
                                    const std::vector<ParameterSpec>& parameters) {
-  constexpr double kShown = 2.0;
   std::string text;
   for (const Contradiction& one : inferred.contradictions) {
-    if (one.distance < kShown) {
+    if (one.distance < kNormal95) {
       break;
     }
     const auto i = static_cast<Index>(one.parameter);

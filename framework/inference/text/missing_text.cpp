@@ -5,6 +5,7 @@
 #include "framework/base/log/notice.hpp"
 #include "framework/base/text/nearest_name.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/inference/text/explain_notice.hpp"
 #include "framework/inference/text/inference_text.hpp"
 
@@ -14,18 +15,12 @@ using Eigen::Index;
 
 namespace {
 
-/// Two digits; "110", not "1.1e+02".
-std::string toShiftText(double shift) {
-  constexpr double kTens = 10.0;
-  return fmt::format(shift < kTens ? "{:.2g}" : "{:.0f}", shift);
-}
-
 /// "c would fall by 99 of its sds": the parameter that a term moves most.
 std::string describeShift(const Eigen::VectorXd& shifts, const std::vector<ParameterSpec>& parameters) {
   Index most = 0;
   const double size = shifts.cwiseAbs().maxCoeff(&most);
-  return fmt::format("{} would {} by {} of its sds", parameters[static_cast<std::size_t>(most)].name.text,
-                     shifts[most] < 0.0 ? "fall" : "rise", toShiftText(size));
+  return fmt::format("{} would {} by {:.3g} of its sds", parameters[static_cast<std::size_t>(most)].name.text,
+                     shifts[most] < 0.0 ? "fall" : "rise", size);
 }
 
 }  // namespace
@@ -39,14 +34,13 @@ std::string explainMissingTerm(const MissingTerm& missing, const std::vector<Par
 
 std::string describeUnnoticed(const std::optional<ModelTest>& test,
                               const std::vector<ParameterSpec>& parameters) {
-  constexpr double kNoticed = 1.0;
-  if (!test || !test->unnoticed || !(test->unnoticed->shift > kNoticed)) {
+  if (!test || !test->unnoticed || !(test->unnoticed->shift > kNoticeable)) {
     return "";
   }
   const UnnoticedTerm& term = *test->unnoticed;
-  return fmt::format("  could go unnoticed: {} below {}{} ({} by up to {} of its sds)\n", term.term,
+  return fmt::format("  could go unnoticed: {} below {}{} ({} by up to {:.3g} of its sds)\n", term.term,
                      toShortText(term.size, kRoughDigits), term.unit.empty() ? "" : " " + term.unit,
-                     parameters[term.parameter].name.text, toShiftText(term.shift));
+                     parameters[term.parameter].name.text, term.shift);
 }
 
 }  // namespace twinmap

@@ -22,6 +22,7 @@ using Eigen::Index;
 
 namespace {
 
+constexpr std::size_t kShown = 4;  // by name, before what stands for the others
 constexpr const char* kNoValuesFit = "no parameter values within the bounds fit";
 
 std::string listBeyondBounds(const InferredMeasurement& inferred, const Estimate& estimate,
@@ -129,10 +130,9 @@ std::string describeStretch(const std::string& first, const std::string& last) {
   return first.substr(0, open) + " between " + take(first) + " and " + take(last);
 }
 
-/// "p = 0.61", or "p < 0.002" where simulated measurements can tell no more.
-std::string describePValue(const Trust& trust) {
-  return trust.p_value <= trust.smallest_p_value ? fmt::format("p < {:.2g}", trust.smallest_p_value)
-                                                 : fmt::format("p = {:.2g}", trust.p_value);
+/// "p = 0.61", or "p < 0.002" where no more can be told.
+std::string describePValue(double p, double smallest) {
+  return p <= smallest ? fmt::format("p < {:.2g}", smallest) : fmt::format("p = {:.2g}", p);
 }
 
 /// "x", of features named as x(0.1 s).
@@ -167,13 +167,11 @@ std::string describeResidual(const SimulatorFit& fit, const std::vector<FeatureI
   const ResidualTest& test = fit.test;
   const double largest = std::abs(fit.residual[test.largest]);
   const std::string& where = fit.largest_feature;
-  constexpr double kMost = 0.5;  // of chi-square: one sample alone, beside which all others fit better
   if (test.largest_p <= std::min(test.chi_square_p, test.whiteness_p) &&
-      largest * largest > kMost * fit.chi_square) {
+      largest * largest > kMostOfMisfit * fit.chi_square) {
     return fmt::format("{} is {:.3g} noise sd off, perhaps a spike", where, largest);
   }
-  constexpr double kGross = 10.0;  // noise is not stated so wrong, and neighbours of a misfit always agree
-  if (fit.chi_square > kGross * fit.degrees) {
+  if (isGross(fit.chi_square, fit.degrees)) {
     return fmt::format("{}, the largest misfit is {:.3g} noise sd, in {}", kNoValuesFit, largest, where);
   }
   if (test.whiteness_p < test.chi_square_p) {
@@ -245,7 +243,6 @@ std::string explainMismatch(const InferredMeasurement& inferred, const std::vect
 
 /// The samples that are left out, the first of them by name.
 std::string explainOutliers(const std::vector<std::string>& outliers) {
-  constexpr std::size_t kShown = 8;
   const std::size_t shown = std::min(kShown, outliers.size());
   return explainNotice(
       Notice::kOutliers,
@@ -384,23 +381,17 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::ve
   const std::string statuses = joinStatuses(listed, ", ");
   if (inferred.trust) {
     const Trust& trust = *inferred.trust;
-    constexpr double kLarge = 1e5;
-    return fmt::format("{} (chi-square {} of {} residuals, {})", statuses,
-                       trust.chi_square < kLarge ? fmt::format("{:.1f}", trust.chi_square)
-                                                 : fmt::format("{:.2g}", trust.chi_square),
-                       trust.residuals, describePValue(trust));
+    return fmt::format("{} (chi-square {:.4g} of {} residuals, {})", statuses, trust.chi_square,
+                       trust.residuals, describePValue(trust.p_value, trust.smallest_p_value));
   }
   if (!inferred.posterior || !inferred.posterior->fit) {
     return statuses + (statuses.empty() ? "" : "; ") + "not judged (the run has no trust model)";
   }
   const SimulatorFit& fit = *inferred.posterior->fit;
-  constexpr double kSmall = 1e-4;  // no reader needs to know more, and small ones underflow
-  const double p = fit.test.calcPValue();
-  return fit.isSimulated()
-             ? fmt::format("{} ({}chi-square {:.4g} of {:.4g} degrees of freedom, {})", statuses,
-                           describeCondition(inferred, listed), fit.chi_square, fit.degrees,
-                           p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p))
-             : statuses;
+  return fit.isSimulated() ? fmt::format("{} ({}chi-square {:.4g} of {:.4g} degrees of freedom, {})",
+                                         statuses, describeCondition(inferred, listed), fit.chi_square,
+                                         fit.degrees, describePValue(fit.test.calcPValue(), kSameNumber))
+                           : statuses;
 }
 
 }  // namespace
@@ -441,7 +432,6 @@ std::string explainStatuses(const InferredMeasurement& inferred, const Estimate&
 }
 
 std::string explainFaults(const std::string& status, const LabelledMeasurements& recordings) {
-  constexpr std::size_t kShown = 4;
   std::string text, remedy;
   std::size_t found = 0;
   for (const auto& [label, inferred] : recordings) {

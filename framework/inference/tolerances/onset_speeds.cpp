@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/expression/expression.hpp"
 #include "framework/experiment/model/elements/force_elements.hpp"
 
@@ -41,7 +42,6 @@ std::string halveOnsets(ModelSpec& model) {
 }  // namespace
 
 std::string describeOnsetSpeeds(const ExperimentSpec& experiment, IntegrationErrors& errors) {
-  constexpr double kNoticeable = 0.5;  // sds: adds a tenth to what noise scatters
   ModelSpec halved = experiment.model;
   const std::string places = halveOnsets(halved);
   if (places.empty()) {

@@ -9,6 +9,7 @@
 
 #include "framework/base/log/log.hpp"
 #include "framework/base/text/number_text.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/feature_spec.hpp"
 #include "framework/experiment/files/experiment_file.hpp"
 #include "framework/experiment/trials/combine_trials.hpp"
@@ -77,8 +78,7 @@ std::string describe(const SimulationSpec& simulation) {
 
 /// "moves k3 by up to 12 of its standard deviations"
 std::string describe(const IntegrationError& error, const std::vector<ParameterSpec>& parameters) {
-  constexpr double kNegligible = 0.1;
-  if (error.shift <= kNegligible) {
+  if (error.shift <= kImmaterial) {
     return fmt::format("raises chi-square by up to {:.2g} of its standard deviations", error.rise);
   }
   return fmt::format("moves {} by up to {:.2g} of its standard deviations",
@@ -105,19 +105,12 @@ void warnOfCoarse(const ModelSpec& model, const IntegrationError& error, const T
                   enough.error.isNegligible() ? "would do" : "are the best that can be had"));
 }
 
-/// Why an error is so large: " (the model is unstable ...)", where it moves an estimate beyond all sense.
-std::string describeCause(const ModelSpec& model, const IntegrationError& error) {
-  constexpr double kSensible = 1e3;  // sds: what tolerances of digits too few cost a stable machine
-  const std::vector<std::string> remarks =
-      error.shift > kSensible ? listModelRemarks(model) : std::vector<std::string>{};
-  return remarks.empty() ? "" : remarks.front();
-}
-
 /// One line: from what, to what, why; what is left where that is not negligible.
 void logTightened(const ModelSpec& model, const IntegrationError& error, const Tightened& taken) {
-  const std::string cause = describeCause(model, error);
-  if (!cause.empty()) {
-    logWarning(fmt::format("{}; integration tolerances tightened to {}", cause, describe(taken.simulation)));
+  const std::vector<std::string> remarks = listModelRemarks(model);
+  if (!remarks.empty()) {  // as that the model is unstable
+    logWarning(fmt::format("{}; integration tolerances tightened to {}", remarks.front(),
+                           describe(taken.simulation)));
     return;
   }
   const std::string text =

@@ -195,7 +195,7 @@ TEST_F(LinearMeasurement, FitsNuisanceParametersAloneWhereTheOthersAreHeld) {
   const double expected =
       column.dot(measured_ - makeMatrix().col(0) * (kTruth[0] + 0.05)) / column.squaredNorm();
   EXPECT_EQ(found.point[0], kTruth[0] + 0.05);
-  EXPECT_NEAR(found.point[1], expected, 0.01 * kStddev / column.norm());
+  EXPECT_NEAR(found.point[1], expected, 0.03 * kStddev / column.norm());
 }
 
 TEST_F(LinearMeasurement, NamesWhyNothingCanBeSimulated) {

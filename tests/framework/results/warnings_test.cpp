@@ -212,11 +212,7 @@ std::vector<Change> listChanges() {
           note(makeWarning(Notice::kCannotRefine, "no noise")),
           note(makeWarning(Notice::kNoLimit)),
           note(makeWarning(Notice::kSurrogateUncalibrated)),
-          note(makeWarning(
-              Notice::kSurrogateRescaled, "k",
-              "Nothing need be done; the run's test samples say whether the enlarged intervals hold.")),
-          note(makeWarning(Notice::kSurrogateRescaled, "k",
-                           "Refine the estimates on the simulator: refine=always.")),
+          note(makeWarning(Notice::kSurrogateRescaled, "k")),
           note(makeWarning(Notice::kTeacherFar, 3.0, 10000)),
           note(makeWarning(Notice::kStudentFar, "k", 2.0)),
           note(makeWarning(Notice::kPosteriorsUnreliable, 5, 20)),

@@ -21,7 +21,6 @@ bool liesIn(const Basin& basin, const VectorXd& at) {
 }
 
 std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
-  constexpr std::size_t kMax = 12;
   std::stable_sort(ends.begin(), ends.end(),
                    [](const LocalSurface& a, const LocalSurface& b) { return a.misfit < b.misfit; });
   std::vector<Basin> basins;
@@ -33,7 +32,7 @@ std::vector<Basin> collectBasins(std::vector<LocalSurface> ends) {
         std::find_if(basins.begin(), basins.end(), [&](const Basin& basin) { return liesIn(basin, end.at); });
     if (known != basins.end()) {
       ++known->searches;
-    } else if (basins.size() < kMax) {
+    } else {
       MatrixXd covariance = BoundedInformation(end.information).calcCovariance();
       basins.push_back({end, std::move(covariance), 1});
     }

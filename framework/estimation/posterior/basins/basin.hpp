@@ -12,6 +12,9 @@ namespace twinmap {
 /// many dimensions, and no starts cover them.
 constexpr Eigen::Index kManyUnknown = 16;
 
+/// Points on the way from one basin to another, at which chi-square is asked.
+constexpr Eigen::Index kWayPoints = 3;
+
 /// A minimum of chi-square within the bounds.
 struct Basin {
   LocalSurface local;

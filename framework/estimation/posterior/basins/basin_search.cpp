@@ -18,9 +18,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// Of the searches, that end in the best basin where noise does not explain it: half of the scouts, which are
-/// few; of all batches any, as the count of confirmations says enough.
-constexpr double kSettledScouts = 0.5, kSettledBatches = 0.0;
 /// Batches after which such a misfit's best fit is what was found.
 constexpr int kBatchesOfMisfit = 2;
 
@@ -90,17 +87,16 @@ const Basin& findNearest(const std::vector<Basin>& basins, const VectorXd& at) {
   });
 }
 
-/// Chi-square on the way from the nearest basin to each point (u x n), in thirds. A search from a point to
-/// which it rises all the way would most likely end in that basin. Returns where it falls again, the lowest
-/// of these places first, but for what noise could be.
+/// Chi-square on the way from the nearest basin to each point (u x n), which ends it. A search from a point
+/// to which it rises all the way would most likely end in that basin. Returns where it falls again, the
+/// lowest of these places first, but for what noise could be.
 MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, const MatrixXd& points) {
-  constexpr Index kPlaces = 3;
-  MatrixXd ways(points.rows(), kPlaces * points.cols());
+  MatrixXd ways(points.rows(), kWayPoints * points.cols());
   for (Index i = 0; i < points.cols(); ++i) {
     const VectorXd& from = findNearest(basins, points.col(i)).local.at;
-    for (Index k = 0; k < kPlaces; ++k) {
-      const double share = static_cast<double>(k + 1) / static_cast<double>(kPlaces);
-      ways.col(i * kPlaces + k) = from + share * (points.col(i) - from);
+    for (Index k = 0; k < kWayPoints; ++k) {
+      const double share = static_cast<double>(k + 1) / static_cast<double>(kWayPoints);
+      ways.col(i * kWayPoints + k) = from + share * (points.col(i) - from);
     }
   }
   const VectorXd reached = surface.calcMisfits(ways);
@@ -108,7 +104,7 @@ MatrixXd findFalls(MisfitSurface& surface, const std::vector<Basin>& basins, con
   for (Index i = 0; i < points.cols(); ++i) {
     double before = findNearest(basins, points.col(i)).local.misfit;
     Index lowest = -1;
-    for (Index k = i * kPlaces; k < (i + 1) * kPlaces; ++k) {
+    for (Index k = i * kWayPoints; k < (i + 1) * kWayPoints; ++k) {
       if (std::isfinite(reached[k]) && reached[k] < before - kBarrier) {
         lowest = lowest < 0 || reached[k] < reached[lowest] ? k : lowest;
       }
@@ -177,9 +173,9 @@ class BasinHunt {
     return isGross(best.chi_square, best.degrees) || !explains_beginning_;
   }
 
-  /// Whether enough searches, and so large a share, end in the best basin, which is as wide as if the noise
-  /// were as large as the residual.
-  bool isSettled(double share) const {
+  /// Whether enough searches end in the best basin, which is as wide as if the noise were as large as the
+  /// residual.
+  bool isSettled() const {
     if (found_.basins.empty()) {
       return false;
     }
@@ -189,7 +185,7 @@ class BasinHunt {
       return end.misfit < best.local.misfit + scale * kBasinAbove &&
              calcDistance(best, end.at) < kBasinReach * std::sqrt(scale);
     });
-    return count >= options_.confirmations && static_cast<double>(count) >= share * found_.starts;
+    return count >= options_.confirmations;
   }
 
   /// The next starts, at most so many.
@@ -260,7 +256,7 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
       return hunt.getFound();
     }
   }
-  if (options.settles && !hunt.isExplained() && hunt.isSettled(kSettledScouts)) {
+  if (options.settles && !hunt.isExplained() && hunt.isSettled()) {
     return hunt.getFound();
   }
   MatrixXd again = hunt.countTaken() == options.scouts ? scouts : MatrixXd(scouts.rows(), 0);
@@ -277,8 +273,7 @@ BasinSearch findEnds(MisfitSurface& surface, const MatrixXd& given, std::uint64_
     if (hunt.getFound().basins.empty() || hunt.isConfirmed()) {
       break;
     }
-    if ((options.settles || hunt.isHopeless()) &&
-        (hunt.isSettled(kSettledBatches) || batch + 1 >= kBatchesOfMisfit)) {
+    if ((options.settles || hunt.isHopeless()) && (hunt.isSettled() || batch + 1 >= kBatchesOfMisfit)) {
       break;
     }
   }

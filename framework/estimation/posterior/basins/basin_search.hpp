@@ -38,9 +38,9 @@ struct BasinSearchOptions {
   /// is near enough else.
   bool from_prior = false;
   /// Whether noise need not explain the best basin: for models that lack something, whose best fit is wanted
-  /// but not trusted. The scouts do where half of them end in it. So does a batch where it was found often
-  /// enough, or the second one. The basin is then as wide as if the noise were as large as the residual.
-  /// Batches always do of a gross misfit, and where no search explains the beginning of the response.
+  /// but not trusted. It ends the search where it was found often enough, as the second batch does. The basin
+  /// is then as wide as if the noise were as large as the residual. Batches always do of a gross misfit, and
+  /// where no search explains the beginning of the response.
   bool settles = false;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/refined/acceptance.hpp"
 
 namespace twinmap {
@@ -13,8 +14,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kFarAbove = 50.0;  // of the best chi-square: e^-25 of its density
 
 LinearModel getModel(const LocalSurface& local) {
   return {local.at, local.misfit, local.information, local.descent};
@@ -214,7 +213,6 @@ const LocalSurface* SearchTeam::findBest() const {
 
 /// Searches far above the best one; a quarter of all is kept whatever it is.
 void SearchTeam::giveUpHopeless() {
-  constexpr double kOfBest = 0.5;
   std::vector<double> reached;
   for (const Search& search : searches_) {
     if (search.local.simulated) {
@@ -226,7 +224,7 @@ void SearchTeam::giveUpHopeless() {
   }
   std::sort(reached.begin(), reached.end());
   const double least = findBest()->misfit;
-  const double near = least + std::max(kFarAbove, kOfBest * least);
+  const double near = least + std::max(kBasinAbove, least);
   const double limit = std::max(near, reached[reached.size() / 4]);
   for (Search& search : searches_) {
     search.active = search.active && search.local.misfit <= limit;
@@ -242,7 +240,7 @@ void SearchTeam::giveUpSlow() {
   }
   for (Search& search : searches_) {
     const double above = search.local.misfit - best->misfit;
-    search.active = search.active && (above < kFarAbove || above < kSlow * (search.before - best->misfit));
+    search.active = search.active && (above < kBasinAbove || above < kSlow * (search.before - best->misfit));
   }
 }
 

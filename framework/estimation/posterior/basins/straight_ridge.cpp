@@ -6,6 +6,7 @@
 #include "framework/estimation/box_points.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/surrogate/box_moments.hpp"
 
 namespace twinmap {
 
@@ -95,21 +96,6 @@ std::vector<Index> choose(const std::vector<Index>& all, unsigned bits) {
   return chosen;
 }
 
-/// Mean and variance of a density exp(slope t - information t^2 / 2) on an interval, by the midpoint rule.
-struct CutNormal {
-  double mean = 0.0, variance = 0.0;
-};
-
-CutNormal cutNormal(double slope, double information, double lower, double upper) {
-  constexpr int kCells = 64;
-  const Eigen::ArrayXd t =
-      lower + (upper - lower) * (Eigen::ArrayXd::LinSpaced(kCells, 0.5, kCells - 0.5) / kCells);
-  const Eigen::ArrayXd logs = slope * t - 0.5 * information * t.square();
-  const Eigen::ArrayXd weights = (logs - logs.maxCoeff()).exp() / (logs - logs.maxCoeff()).exp().sum();
-  const double mean = (weights * t).sum();
-  return {mean, (weights * (t - mean).square()).sum()};
-}
-
 }  // namespace
 
 RidgeShape findRidgeShape(MisfitSurface& surface, const Basin& basin) {
@@ -148,10 +134,13 @@ Basin levelBasin(const Basin& basin) {
     const VectorXd direction = eigen.vectors.col(k);
     const double lower = -calcReach(at, -direction), upper = calcReach(at, direction);
     if (upper > lower) {
-      const CutNormal cut =
-          cutNormal(direction.dot(basin.local.descent), std::max(0.0, eigen.values[k]), lower, upper);
-      at += cut.mean * direction;
-      variances[k] = std::max(variances[k], cut.variance);
+      const double middle = 0.5 * (lower + upper), half = 0.5 * (upper - lower);
+      const double information = std::max(0.0, eigen.values[k]);
+      const gp::Moments cut = gp::calcBoxMoments(
+          MatrixXd::Constant(1, 1, half * half * information),
+          VectorXd::Constant(1, half * (direction.dot(basin.local.descent) - information * middle)));
+      at += (middle + half * cut.mean[0]) * direction;
+      variances[k] = std::max(variances[k], half * half * cut.covariance(0, 0));
     }
   }
   levelled.covariance = eigen.vectors * variances.asDiagonal() * eigen.vectors.transpose();

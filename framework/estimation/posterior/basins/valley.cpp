@@ -13,8 +13,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr Index kWayPoints = 5;
-
 std::size_t findNearestBefore(const std::vector<Basin>& basins, std::size_t k) {
   const VectorXd& at = basins[k].local.at;
   const auto end = basins.begin() + static_cast<std::ptrdiff_t>(k);

@@ -5,6 +5,7 @@
 
 #include "framework/base/random/random.hpp"
 #include "framework/estimation/box_points.hpp"
+#include "framework/estimation/interval_factor.hpp"
 #include "framework/estimation/levels.hpp"
 #include "framework/estimation/ridges/flat_directions.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
@@ -63,11 +64,10 @@ class FloorBuilder {
 
   /// The place itself, then a step each way along the valley that leaves it open, short enough for any bend.
   void addSteps(int place, const VectorXd& at, const MatrixXd& along) {
-    constexpr double kShort = 1e-4;
     add(place, at, 0.0, 0.0);
     for (const auto& way : along.colwise()) {
-      const double side = isInBox(at + kShort * way) ? kShort : -kShort;
-      add(place, clampToBox(at + side * way), 0.0, 1.0 / kShort);
+      const double side = isInBox(at + kSameNumber * way) ? kSameNumber : -kSameNumber;
+      add(place, clampToBox(at + side * way), 0.0, 1.0 / kSameNumber);
     }
   }
 
@@ -122,7 +122,6 @@ std::vector<PlaceMoments> sumAtPlaces(const FloorDraws& draws, const VectorXd& v
 }  // namespace
 
 bool FloorDraws::determine(const VectorXd& values) const {
-  constexpr double kTenth = 10.0, kHalf = 2.0;
   if (!isGiven() || !values.allFinite()) {
     return false;
   }
@@ -133,16 +132,15 @@ bool FloorDraws::determine(const VectorXd& values) const {
     open += one.weight * one.open;
     squares += one.weight * one.weight;
   }
-  return 1.0 >= static_cast<double>(kMinRidgePoints) * squares && kHalf * between <= all &&
-         kTenth * open <= all;
+  return 1.0 >= static_cast<double>(kMinRidgePoints) * squares && between <= kClearlyLess * all &&
+         open <= kImmaterial * all;
 }
 
 FloorDraws drawAcrossValleys(const std::vector<LocalSurface>& places, const LogCoordinates& coordinates,
                              std::uint64_t seed) {
-  constexpr std::size_t kDraws = 4000, kFewest = 40;  // standard deviations are known to some per cent
   const RandomStream random(seed, RandomPurpose::kPosteriorWalk);
   FloorBuilder builder(coordinates, random);
-  const std::size_t pairs = std::max(kFewest, kDraws / std::max<std::size_t>(places.size(), 1)) / 2;
+  const std::size_t pairs = kManyErrors / std::max<std::size_t>(places.size(), 1) + 1;
   for (std::size_t k = 0; k < places.size(); ++k) {
     LocalValley valley;
     if (findValley(places[k], valley)) {

@@ -9,6 +9,7 @@
 
 #include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/box_points.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
 #include "framework/experiment/points/prior.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -84,8 +85,7 @@ class Follower {
   /// Moves those columns of `points` that are away from what their draws (columns of `drawn`) ask for, in
   /// steps of Gauss and Newton. Returns those that have not arrived.
   std::vector<Index> lead(const MatrixXd& drawn, std::vector<Index> away, MatrixXd& points) const {
-    constexpr int kSteps = 5;
-    for (int step = 0; step < kSteps && !center_.empty() && !away.empty(); ++step) {
+    for (int step = 0; step < kFewIterations && !center_.empty() && !away.empty(); ++step) {
       move(drawn, away, points);
       away = listAway(drawn, away, points);
     }

@@ -26,12 +26,11 @@ namespace {
 
 /// Numbers of one chain, one after the other.
 importance::SliceNumbers makeNumbers(const RandomStream& random) {
-  constexpr std::uint64_t kReplicate = 1000;  // of normal numbers: rounds are fewer
   auto used = std::make_shared<std::uint64_t>(0);
   return {[random, used] { return random.calcUniform((*used)++, kOfSlices); },
           [random, used](int count) {
             VectorXd normals(count);
-            random.drawNormals((*used)++, kReplicate, normals.data(), static_cast<std::size_t>(count));
+            random.drawNormals((*used)++, kOfSlices, normals.data(), static_cast<std::size_t>(count));
             return normals;
           }};
 }

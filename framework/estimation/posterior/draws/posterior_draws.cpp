@@ -8,6 +8,7 @@
 #include "framework/base/random/standard_normal.hpp"
 #include "framework/estimation/bounded_information.hpp"
 #include "framework/estimation/box_points.hpp"
+#include "framework/estimation/first_proposal.hpp"
 #include "framework/estimation/posterior/basins/straight_ridge.hpp"
 #include "framework/estimation/posterior/draws/draw_channels.hpp"
 #include "framework/estimation/posterior/draws/linear_posterior.hpp"
@@ -29,8 +30,8 @@ using importance::RoundNumbers;
 
 namespace {
 
-constexpr double kEnough =
-    0.4;  // effective draws a draw of a round: with 200, quantiles at 2.5 % are as good as means
+/// Effective draws a draw of a round: with 200, quantiles at 2.5 % are as good as means.
+constexpr double kEnough = 0.4;
 
 /// The numbers of the rounds, made when first asked for. All measurements have the same, so that their errors
 /// are shared: they fill the cube evenly, which makes these errors small (a third to a tenth).
@@ -84,19 +85,13 @@ VectorXd calcShares(const std::vector<Basin>& basins, const MisfitSurface& surfa
   return (0.5 * weights / weights.sum()).array() + 0.5 / static_cast<double>(count);
 }
 
-/// Most draws as far from a basin's centre as its covariance says, some twice and few four times as far, and
-/// few anywhere.
 BoxMixture proposeFirst(const std::vector<Basin>& basins, const VectorXd& shares) {
-  constexpr double kNear = 0.7, kFar = 0.2, kFarthest = 0.05;
-  std::vector<importance::NormalPart> parts;
+  std::vector<importance::NormalPart> modes;
   for (std::size_t k = 0; k < basins.size(); ++k) {
-    const double share = shares[static_cast<Index>(k)];
-    const MatrixXd lower = linalg::calcCholesky(basins[k].covariance).lower;
-    parts.push_back({kNear * share, basins[k].local.at, 1.1 * lower});
-    parts.push_back({kFar * share, basins[k].local.at, 2.0 * lower});
-    parts.push_back({kFarthest * share, basins[k].local.at, 4.0 * lower});
+    modes.push_back({shares[static_cast<Index>(k)], basins[k].local.at,
+                     linalg::calcCholesky(basins[k].covariance).lower});
   }
-  return BoxMixture(std::move(parts));
+  return proposeAround(modes);
 }
 
 /// Where the draws of the first round go: basins, by the shares of their masses.
@@ -139,14 +134,14 @@ AdaptiveDraws drawMixtures(MisfitSurface& surface, const Landscape& landscape, I
 /// Of many parameters about a bent response, where its bend is more than weights make good.
 AdaptiveDraws drawAboutOne(MisfitSurface& surface, const Landscape& landscape, bool has_many,
                            const PosteriorDrawOptions& options) {
-  constexpr double kNearlyLinear = 0.7;  // variance of log weights: half of the draws count
   const Basin& basin = landscape.basins.front();
   if (!has_many) {
     return sampleLinearized(surface, basin, options.draws, 1, options.seed);
   }
   const double nonlinearity =
       landscape.nonlinearity ? *landscape.nonlinearity : calcNonlinearity(surface, basin, options.seed);
-  if (!(nonlinearity < kNearlyLinear)) {
+  // the variance of log weights says how many of the draws count
+  if (!(std::exp(-nonlinearity) > kEnough)) {
     if (const auto minima = RandomizedMinima::measure(surface, basin)) {
       return sampleRandomizedMinima(surface, *minima, options.draws, kFewIterations, options.seed);
     }

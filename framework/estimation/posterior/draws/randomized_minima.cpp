@@ -7,6 +7,7 @@
 #include "framework/base/random/scrambled_sobol.hpp"
 #include "framework/base/random/standard_normal.hpp"
 #include "framework/estimation/box_points.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/draws/draw_channels.hpp"
 #include "kernels/linalg/decompositions.hpp"
 #include "kernels/sampling/draw_rounds.hpp"
@@ -19,8 +20,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kAxisStep = 0.5;    // standard deviations: what bends within the posterior, not at a point
-constexpr double kLeastRoom = 0.05;  // of a standard deviation: a prior's bound, where it hardly goes
+constexpr double kAxisStep = 0.5;  // standard deviations: what bends within the posterior, not at a point
 /// Of the longest axis: two shorter ones bend by a hundredth of what it does, and what one bends with a
 /// longer one is seen along that.
 constexpr double kShortest = 0.1;
@@ -34,7 +34,7 @@ VectorXd chooseSteps(const VectorXd& at, const MatrixXd& axes) {
     }
     const double up = calcReach(at, axes.col(k), kAxisStep), down = calcReach(at, -axes.col(k), kAxisStep);
     const double step = up >= down ? up : -down;
-    return std::abs(step) < kLeastRoom ? 0.0 : step;
+    return std::abs(step) < kImmaterial ? 0.0 : step;
   });
 }
 
@@ -127,10 +127,9 @@ MatrixXd RandomizedMinima::calcSlopes(const VectorXd& z) const {
 
 std::optional<VectorXd> RandomizedMinima::solve(const VectorXd& wanted) const {
   constexpr int kMaxSteps = 50, kMaxHalvings = 20;
-  constexpr double kTolerance = 1e-9;  // of standard deviations
   VectorXd z = VectorXd::Zero(wanted.size()), missing = wanted;
   for (int step = 0; step < kMaxSteps; ++step) {
-    if (missing.norm() < kTolerance * (1.0 + wanted.norm())) {
+    if (missing.norm() < kSameNumber * (1.0 + wanted.norm())) {
       return z;
     }
     VectorXd move = linalg::solveLinear(calcSlopes(z), missing);

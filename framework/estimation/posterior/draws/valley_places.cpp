@@ -15,7 +15,6 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kValues[] = {-0.8, -0.4, 0.0, 0.4, 0.8};  // in half-widths
-constexpr Index kElsewhere = 2;                            // starts a value that know of no basin
 
 /// The point of the basin's linear model with coordinate j at a value, where it is nearest to it.
 VectorXd startFromNearest(const std::vector<Basin>& basins, Index j, double value) {
@@ -34,18 +33,14 @@ VectorXd startFromNearest(const std::vector<Basin>& basins, Index j, double valu
 std::vector<LocalSurface> findValleyPlaces(MisfitSurface& surface, const std::vector<Basin>& basins,
                                            std::uint64_t seed) {
   const Index u = surface.getDimensions(), values = static_cast<Index>(std::size(kValues));
-  const Index starts_per_value = 1 + kElsewhere;
-  const MatrixXd elsewhere = makeStarts(u, seed, static_cast<int>(u * values * kElsewhere));
-  MatrixXd starts(u, u * values * starts_per_value), held(u, starts.cols());
-  for (Index j = 0, column = 0; j < u; ++j) {
-    for (Index v = 0; v < values; ++v) {
-      const double value = kValues[v];
-      starts.col(column) = startFromNearest(basins, j, value);
-      starts.middleCols(column + 1, kElsewhere) =
-          elsewhere.middleCols((j * values + v) * kElsewhere, kElsewhere);
-      starts.row(j).segment(column, starts_per_value).setConstant(value);
-      held.middleCols(column, starts_per_value) = VectorXd::Unit(u, j).replicate(1, starts_per_value);
-      column += starts_per_value;
+  MatrixXd starts(u, 2 * u * values), held(u, starts.cols());
+  starts.rightCols(u * values) = makeStarts(u, seed, static_cast<int>(u * values));  // that know of no basin
+  for (Index i = 0; i < u * values; ++i) {
+    const Index j = i / values;
+    starts.col(i) = startFromNearest(basins, j, kValues[i % values]);
+    for (const Index column : {i, u * values + i}) {
+      starts(j, column) = kValues[i % values];
+      held.col(column) = VectorXd::Unit(u, j);
     }
   }
   SearchTeam team(surface, starts, held);

@@ -18,6 +18,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr double kLargestTangent = 3.8;  // of a hyperbolic tangent: a partial autocorrelation of .999
+constexpr double kWidest = 0.5;          // its spread where the likelihood is flat, towards 1
 
 VectorXd toAutoregression(const VectorXd& at) {
   return makeAutoregression(at.array().tanh().matrix());
@@ -56,11 +57,10 @@ double calcMisfit(const ResidualSeries& series, const VectorXd& at) {
   return 0.5 * calcRestricted(series, at) + 2.0 * at.array().cosh().log().sum();
 }
 
-/// Steps along the coordinates that halve where none helps.
-VectorXd minimize(const std::function<double(const VectorXd&)>& calc, VectorXd at) {
-  constexpr double kFirst = 0.4, kLast = 0.01;
+/// Steps along the coordinates that halve where none helps, down to a part of what n samples leave open.
+VectorXd minimize(const std::function<double(const VectorXd&)>& calc, VectorXd at, Index n) {
   double least = calc(at);
-  for (double step = kFirst; step > kLast;) {
+  for (double step = kWidest; step > kImmaterial / std::sqrt(static_cast<double>(n));) {
     bool moved = false;
     for (Index j = 0; j < at.size(); ++j) {
       for (const double side : {1.0, -1.0}) {
@@ -144,7 +144,6 @@ std::vector<NoiseColour> makeNodes(const std::function<double(const VectorXd&)>&
                                    const MatrixXd& hessian) {
   const Index p = at.size();
   const linalg::SymmetricEigen eigen = linalg::calcSymmetricEigen(hessian);
-  constexpr double kWidest = 0.5;  // where the likelihood is flat, towards 1
   MatrixXd reaches(p, 2);
   for (Index j = 0; j < p; ++j) {
     const double value = eigen.values[j];
@@ -186,7 +185,7 @@ std::vector<NoiseColour> fitColours(const ResidualSeries& series) {
   for (Index p = 1; p <= kMaxOrder; ++p) {
     from.conservativeResize(p);
     from[p - 1] = 0.0;
-    from = minimize(calc, from);
+    from = minimize(calc, from, n);
     const double information = calcRestricted(series, from) + per_coefficient * static_cast<double>(p);
     if (information < least) {
       least = information;

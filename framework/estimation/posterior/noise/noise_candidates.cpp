@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "framework/estimation/bounded_information.hpp"
+#include "framework/estimation/levels.hpp"
 #include "framework/estimation/posterior/noise/colour_fit.hpp"
 #include "framework/estimation/posterior/noise/outlier_loss.hpp"
 #include "framework/estimation/posterior/noise/residual_loss.hpp"
@@ -212,8 +213,8 @@ NoiseHypothesis guessSizes(NoiseHypothesis stated, const RefinementModel& model,
     }
     const VectorXd bends = values.head(n - 2) - 2.0 * values.segment(1, n - 2) + values.tail(n - 2);
     const double mean_square = values.squaredNorm() / static_cast<double>(n);
-    constexpr double kLeast = 1e-6;  // of the signal: samples that were rounded to a few levels
-    noise.factor = std::max({calcRobustSize(bends) / std::sqrt(6.0), kLeast * std::sqrt(mean_square),
+    // samples that were rounded to a few levels have next to none
+    noise.factor = std::max({calcRobustSize(bends) / std::sqrt(6.0), kSameNumber * std::sqrt(mean_square),
                              std::numeric_limits<double>::min()});
   }
   return stated;

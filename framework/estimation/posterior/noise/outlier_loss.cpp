@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/estimation/interval_factor.hpp"
+#include "framework/estimation/levels.hpp"
 #include "kernels/linalg/order.hpp"
 
 namespace twinmap {
@@ -36,8 +38,7 @@ double calcMedianSpread(const VectorXd& residual) {
 }  // namespace
 
 double calcRobustSize(const VectorXd& values) {
-  constexpr double kOfNormal = 1.4826;  // standard deviations in a median absolute value
-  return kOfNormal * calcMedian(VectorXd(values.cwiseAbs()));
+  return calcMedian(VectorXd(values.cwiseAbs())) / kNormal50;
 }
 
 double calcOutlierLoss(double residual) {
@@ -53,7 +54,6 @@ double calcOutlierWeight(double residual) {
 
 OutlierSize findOutlierSize(const VectorXd& residual) {
   constexpr int kMaxSteps = 100;
-  constexpr double kConverged = 1e-10;  // of the size: the loss is stationary there
   const auto n = static_cast<double>(residual.size());
   OutlierSize found;
   found.size = std::max(calcMedianSpread(residual), std::numeric_limits<double>::min());
@@ -62,7 +62,7 @@ OutlierSize findOutlierSize(const VectorXd& residual) {
     const VectorXd weights = (residual / found.size).unaryExpr(&calcOutlierWeight);
     const double next =
         std::max(std::sqrt(weights.dot(residual.cwiseAbs2()) / n), std::numeric_limits<double>::min());
-    const bool converged = std::abs(next - found.size) <= kConverged * found.size;
+    const bool converged = std::abs(next - found.size) <= kSameNumber * found.size;
     found.size = next;
     if (converged) {
       break;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/estimation/levels.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "kernels/linalg/autocorrelation.hpp"
 #include "kernels/linalg/decompositions.hpp"
@@ -61,7 +62,6 @@ std::vector<long> countSteps(const std::vector<double>& times) {
 
 OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& window, int output,
                           const std::vector<CensoredFeature>& censored) {
-  constexpr double kSame = 1e-6;  // of the smallest difference, as grids are found
   const std::vector<FeatureInfo>& infos = model.getExtractor().getInfos();
   OutputSamples samples;
   for (std::size_t i = 0; i < window.features.size(); ++i) {
@@ -86,7 +86,7 @@ OutputSamples findSamples(const RefinementModel& model, const GrowingWindow& win
     }
     times.push_back(get_time(row));
   }
-  if (times.size() > 1 && smallest > kSame * times.back() / static_cast<double>(times.size())) {
+  if (times.size() > 1 && smallest > kSameNumber * times.back() / static_cast<double>(times.size())) {
     samples.lags = findLags(times, smallest);
   }
   if (samples.lags.empty() && times.size() > 2) {

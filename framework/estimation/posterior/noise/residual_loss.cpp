@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "framework/estimation/posterior/noise/outlier_loss.hpp"
 
@@ -14,21 +15,24 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double kFar = -25.0;  // beyond, the normal distribution function is of tiny numbers
+/// The normal distribution function; none where it is too small a number.
+std::optional<double> calcNormalProbability(double z) {
+  const double probability = 0.5 * std::erfc(-z / std::sqrt(2.0));
+  return std::isnormal(probability) ? std::make_optional(probability) : std::nullopt;
+}
 
 /// The normal density over its distribution function, at z.
 double calcMillsRatio(double z) {
-  if (z < kFar) {
-    return -z * (1.0 + 1.0 / (z * z));  // its asymptotic series
-  }
-  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::acos(-1.0));
-  return density / (0.5 * std::erfc(-z / std::sqrt(2.0)));
+  const std::optional<double> probability = calcNormalProbability(z);
+  return probability ? std::exp(-0.5 * z * z) / std::sqrt(2.0 * std::acos(-1.0)) / *probability
+                     : -z * (1.0 + 1.0 / (z * z));  // its asymptotic series
 }
 
 /// -2 log of the normal distribution function.
 double calcCensoredLoss(double z) {
-  return z > kFar ? -2.0 * std::log(0.5 * std::erfc(-z / std::sqrt(2.0)))
-                  : z * z + std::log(2.0 * std::acos(-1.0)) + 2.0 * std::log(calcMillsRatio(z));
+  const std::optional<double> probability = calcNormalProbability(z);
+  return probability ? -2.0 * std::log(*probability)
+                     : z * z + std::log(2.0 * std::acos(-1.0)) + 2.0 * std::log(calcMillsRatio(z));
 }
 
 }  // namespace

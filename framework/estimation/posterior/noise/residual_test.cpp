@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "framework/estimation/levels.hpp"
+
 namespace twinmap {
 
 using Eigen::Index;
@@ -22,7 +24,6 @@ struct LagTest {
   double share;
 };
 constexpr LagTest kLagTests[] = {{1, 0.4}, {3, 0.4}, {kMostLags, 0.1}};
-constexpr Index kSamplesPerLag = 5;
 
 /// The residuals of each output's samples, in the order of time.
 std::map<int, std::vector<double>> collectSamples(const VectorXd& residual,
@@ -63,7 +64,7 @@ double testWhiteness(const std::map<int, std::vector<double>>& samples, Index la
   for (const auto& [output, values] : samples) {
     const auto count = static_cast<Index>(values.size());
     if (count >= kFewestTested) {
-      const Index own = std::min(lags, count / kSamplesPerLag);
+      const Index own = std::min(lags, count / kPerUnknown);
       statistic += calcLjungBox(values, own);
       degrees += static_cast<double>(own);
     }
@@ -76,7 +77,7 @@ void findDependence(const std::map<int, std::vector<double>>& samples, ResidualT
   double strongest = 0.0;
   for (const auto& [output, values] : samples) {
     const auto count = static_cast<Index>(values.size());
-    for (Index lag = 1; count >= kFewestTested && lag <= std::min(kMostLags, count / kSamplesPerLag); ++lag) {
+    for (Index lag = 1; count >= kFewestTested && lag <= std::min(kMostLags, count / kPerUnknown); ++lag) {
       const double correlation = calcCorrelation(values, lag);
       const double deviations = std::abs(correlation) * std::sqrt(static_cast<double>(count));
       if (deviations > strongest) {

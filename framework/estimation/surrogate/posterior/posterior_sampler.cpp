@@ -6,6 +6,7 @@
 
 #include "framework/base/random/random.hpp"
 #include "framework/estimation/box_points.hpp"
+#include "framework/estimation/first_proposal.hpp"
 #include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
@@ -15,12 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using importance::BoxMixture;
 using importance::WeightedDraws;
-
-namespace {
-
-constexpr int kDrawChannel = 0, kCenterChannel = 1;  // of random numbers; a round each after the first
-
-}  // namespace
 
 PosteriorModel makePosteriorModel(const Surrogate& surrogate, std::shared_ptr<const Prior> density) {
   return {surrogate.forward,    surrogate.center, surrogate.half_width,
@@ -71,14 +66,14 @@ const importance::RoundNumbers& PosteriorSampler::getNumbers(int round, std::uin
     const auto calc_normal = [&](Index k, Index i) {
       return random.calcNormal(draw(i), static_cast<std::uint64_t>(k) + 1, sample);
     };
-    numbers_.push_back(
-        {VectorXd::NullaryExpr(draws_, calc_pick),
-         MatrixXd::NullaryExpr(model_.prior.count(), draws_, calc_normal),
-         drawUniforms(importance::kCenters, kCenterChannel + static_cast<int>(numbers_.size()), sample)});
+    numbers_.push_back({VectorXd::NullaryExpr(draws_, calc_pick),
+                        MatrixXd::NullaryExpr(model_.prior.count(), draws_, calc_normal),
+                        drawUniforms(importance::kCenters, static_cast<int>(numbers_.size()) + 1, sample)});
   }
   return numbers_[static_cast<std::size_t>(round)];
 }
 
+/// Of a round, counted from 1; in channel 0 those that draws are resampled by.
 VectorXd PosteriorSampler::drawUniforms(Index count, int channel, std::uint64_t sample) const {
   const RandomStream random(seed_, RandomPurpose::kPosteriorResampling);
   return VectorXd::NullaryExpr(count, [&](Index i) {
@@ -101,19 +96,15 @@ VectorXd PosteriorSampler::calcLogs(const MatrixXd& points) {
   return logs;
 }
 
-/// Most draws are as far from the modes as they are said to be, few twice as far, and few anywhere.
 BoxMixture PosteriorSampler::proposeFirst() const {
-  constexpr double kNear = 0.75, kFar = 0.2, kFarWidth = 2.0;
-  std::vector<importance::NormalPart> parts;
+  std::vector<importance::NormalPart> modes;
   for (std::size_t k = 0; k < mode_factors_.size(); ++k) {
     const ScoreMode& mode = inversion_.getModes()[k];
     VectorXd scale = VectorXd::Ones(model_.prior.count());
     scale.head(model_.parameters) = model_.stddev_scale;
-    const MatrixXd lower = scale.asDiagonal() * mode_factors_[k];
-    parts.push_back({kNear * mode.share, mode.moments.mean, lower});
-    parts.push_back({kFar * mode.share, mode.moments.mean, kFarWidth * lower});
+    modes.push_back({mode.share, mode.moments.mean, scale.asDiagonal() * mode_factors_[k]});
   }
-  return BoxMixture(std::move(parts));
+  return proposeAround(modes);
 }
 
 /// Where the likelihood is taken for a point: nearer to the nearest mode, by the calibrated scale. It is in
@@ -168,7 +159,7 @@ SurrogatePosterior PosteriorSampler::summarize(const importance::AdaptiveDraws& 
   posterior.weighted = {(half_width.asDiagonal() * draws.points).colwise() + center, draws.weights};
   posterior.normal_mean = (center + half_width.cwiseProduct(normal.mean)).head(p);
   posterior.normal_covariance = scale(normal.covariance);
-  const MatrixXd chosen = importance::resample(draws, drawUniforms(draws_, kDrawChannel, sample));
+  const MatrixXd chosen = importance::resample(draws, drawUniforms(draws_, 0, sample));
   posterior.draws = (half_width.asDiagonal() * chosen).colwise() + center;
   return posterior;
 }

@@ -61,14 +61,15 @@ TEST(Confirm, AgreesWithTheSearchOfASmoothModel) {
   EXPECT_LT((confirmed.stddev.array() / searched.stddev.array() - 1.0).abs().maxCoeff(), 0.02);
 }
 
-TEST(Confirm, LeavesToTheSearchWhatIsFarAway) {
+TEST(Confirm, EndsWhereTheSearchDoesFromFarAway) {
   Problem problem = makeBent(1.0);
   const VectorXd features = problem.measure(makeVector({0.4, -0.3}), kNoiseStddev);
   const VectorXd start = makeVector({-0.6, 0.5});
   const Refined refined = refineKnowing(problem, features, start, 1e-4 * MatrixXd::Identity(2, 2));
   const Refined searched = problem.refineFrom(features, {{"map", start}});
-  EXPECT_EQ(refined.point, searched.point);
-  EXPECT_EQ(refined.simulations, searched.simulations + 5);
+  ASSERT_TRUE(refined.isAccepted());
+  EXPECT_LT(refined.simulations, searched.simulations);
+  EXPECT_LT(((refined.point - searched.point).array() / searched.stddev.array()).abs().maxCoeff(), 0.05);
 }
 
 TEST(Confirm, DoesNotBeginWhereTheLimitsAreNear) {
