@@ -307,6 +307,23 @@ std::string explainUncalibrated(const InferredMeasurement& inferred) {
   return explainBriefly(Notice::kUncalibrated) + other;
 }
 
+/// "p = 0.34"; no reader needs to know more of small ones, which underflow.
+std::string describeProbability(double p) {
+  constexpr double kSmall = 1e-4;
+  return p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p);
+}
+
+/// By the parameter that scatters most.
+std::string explainDisagreement(const std::vector<ScatterEstimate>& scatter,
+                                const std::vector<ParameterSpec>& parameters) {
+  const auto most = std::max_element(scatter.begin(), scatter.end(),
+                                     [](const auto& a, const auto& b) { return a.ratio < b.ratio; });
+  const std::string& name = parameters[static_cast<std::size_t>(most - scatter.begin())].name.text;
+  return explainNotice(
+      Notice::kTrialsDisagree, most->degrees + 1, describeProbability(calcScatterPValue(*most)),
+      fmt::format("{} scatters by {:.3g} of its sds, which the interval covers", name, most->ratio));
+}
+
 /// "" of those that are explained with the numbers they concern: makeInferenceTable().
 std::string explainStatus(const std::string& status, const InferredMeasurement& inferred,
                           const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
@@ -343,6 +360,9 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   }
   if (is(Notice::kUncalibrated)) {
     return explainUncalibrated(inferred);
+  }
+  if (is(Notice::kTrialsDisagree)) {
+    return explainDisagreement(inferred.scatter, parameters);
   }
   if (is(Notice::kPosteriorUncalibrated)) {
     return explainNotice(Notice::kPosteriorUncalibrated, inferred.posterior->doubt);
@@ -394,13 +414,10 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::ve
     return statuses + (statuses.empty() ? "" : "; ") + "not judged (the run has no trust model)";
   }
   const SimulatorFit& fit = *inferred.posterior->fit;
-  constexpr double kSmall = 1e-4;  // no reader needs to know more, and small ones underflow
-  const double p = fit.test.calcPValue();
-  return fit.isSimulated()
-             ? fmt::format("{} ({}chi-square {:.4g} of {:.4g} degrees of freedom, {})", statuses,
-                           describeCondition(inferred, listed), fit.chi_square, fit.degrees,
-                           p < kSmall ? "p < 0.0001" : fmt::format("p = {:.2g}", p))
-             : statuses;
+  return fit.isSimulated() ? fmt::format("{} ({}chi-square {:.4g} of {:.4g} degrees of freedom, {})",
+                                         statuses, describeCondition(inferred, listed), fit.chi_square,
+                                         fit.degrees, describeProbability(fit.test.calcPValue()))
+                           : statuses;
 }
 
 }  // namespace
