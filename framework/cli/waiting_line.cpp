@@ -29,8 +29,10 @@ namespace {
 
 }  // namespace
 
-WaitingLine::WaitingLine(std::string what)
-    : stage_(std::in_place, std::move(what)), line_(getTerminalWidth(), &writeToStderr) {
+WaitingLine::WaitingLine(std::string what, std::function<void()> at_interrupt)
+    : at_interrupt_(std::move(at_interrupt)),
+      stage_(std::in_place, std::move(what)),
+      line_(getTerminalWidth(), &writeToStderr) {
   watchInterrupt(true);
   thread_ = std::thread([this] { renew(); });
 }
@@ -49,6 +51,9 @@ void WaitingLine::renew() {
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
     if (getSignal() != 0) {
       line_.clear();
+      if (at_interrupt_) {
+        at_interrupt_();
+      }
       endByInterrupt(seconds);
     }
     line_.tick(seconds);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -15,7 +16,8 @@ namespace twinmap::cli {
 /// SIGTERM with what is known then: how far it is, the best fit and its parameters.
 class WaitingLine {
  public:
-  explicit WaitingLine(std::string what);
+  /// at_interrupt: prints what is finished and waits for the rest; called by a thread of its own.
+  explicit WaitingLine(std::string what, std::function<void()> at_interrupt = {});
   ~WaitingLine() { clear(); }
   WaitingLine(const WaitingLine&) = delete;
   WaitingLine& operator=(const WaitingLine&) = delete;
@@ -28,6 +30,7 @@ class WaitingLine {
  private:
   void renew();
 
+  const std::function<void()> at_interrupt_;
   std::optional<SearchStage> stage_;
   SearchLine line_;
   std::mutex mutex_;

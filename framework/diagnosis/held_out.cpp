@@ -159,8 +159,10 @@ ExperimentSpec sizeNoiseByFit(const ExperimentSpec& experiment, const RecordedFe
 }
 
 KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                          const SimulatorPosteriorOptions& options) {
+                          SimulatorPosteriorOptions options) {
   requireKnownNoise(experiment, "how well a prediction must fit");
+  options.search.settles = true;
+  options.spares_misfit = true;
   const RecordingsProblem problem(experiment, recordings);
   const auto u = static_cast<Index>(problem.getUnknown().size());
   const auto p = static_cast<Index>(experiment.model.parameters.size());

@@ -18,10 +18,11 @@ struct KnownMachine {
 ExperimentSpec sizeNoiseByFit(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                               const SimulatorPosteriorOptions& options);
 
-/// From recordings, by their posterior, or by the linear model at its best point where no posterior is
-/// reliable. Throws std::runtime_error where nothing can be simulated. Cost: that of samplePosterior().
+/// From recordings, by their posterior. By the linear model at its best point where no posterior is reliable,
+/// or noise does not explain that. Throws std::runtime_error where nothing can be simulated.
+/// Cost: that of samplePosterior().
 KnownMachine inferMachine(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
-                          const SimulatorPosteriorOptions& options);
+                          SimulatorPosteriorOptions options);
 
 /// As others state them: exact, up to a millionth of the bounds.
 KnownMachine stateMachine(const ExperimentSpec& experiment, const Eigen::VectorXd& parameters);

@@ -8,6 +8,7 @@
 #include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/ridges/identified_combinations.hpp"
+#include "framework/estimation/scatter.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/inference/asked.hpp"
 #include "framework/inference/clock_fault.hpp"
@@ -83,9 +84,8 @@ struct InferredMeasurement {
   std::vector<std::string> unused{};   ///< parameters that nothing in the experiment depends on
   std::vector<Ridge> ridges{};         ///< of the simulator's posterior, where that alone was sampled
   std::optional<SegmentReport> segments{};
-  /// Of each parameter, the sd between the recordings it was inferred with, where these disagree by more than
-  /// their noise says; else empty.
-  std::vector<double> scatter{};
+  /// Of each parameter, over recordings that disagree; else empty.
+  std::vector<ScatterEstimate> scatter{};
 
   /// Null of none.
   const MissingTerm* findMissing() const {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/base/log/notice.hpp"
+
 namespace twinmap {
 namespace {
 
@@ -132,13 +134,21 @@ void addMissing(const InferredMeasurement& inferred, Statuses& statuses) {
 }
 
 /// What recordings that disagree say of the machine is as wide as they scatter.
-void widen(const std::vector<double>& scatter, Estimate& estimate) {
+void widen(const std::vector<ScatterEstimate>& scatter, Estimate& estimate) {
   if (scatter.empty() || !estimate.isGiven() || estimate.isMultimodal()) {
     return;
   }
-  const Eigen::VectorXd between =
-      Eigen::VectorXd::Map(scatter.data(), static_cast<Eigen::Index>(scatter.size()));
-  const Eigen::VectorXd wide = (estimate.stddev.cwiseAbs2() + between.cwiseAbs2()).cwiseSqrt();
+  const auto p = static_cast<Eigen::Index>(scatter.size());
+  Eigen::VectorXd wide(p);
+  estimate.limits = {Eigen::VectorXd(p), Eigen::VectorXd(p)};
+  estimate.interval_factors = {Eigen::MatrixXd(p, 1), Eigen::MatrixXd(p, 1)};
+  for (Eigen::Index i = 0; i < p; ++i) {
+    const ScatterEstimate& one = scatter[static_cast<std::size_t>(i)];
+    wide[i] = one.widen(estimate.stddev[i]);
+    estimate.limits.lower[i] = one.bounds.lower;
+    estimate.limits.upper[i] = one.bounds.upper;
+    estimate.interval_factors.set(i, 0, one.calcFactor(estimate.stddev[i]));
+  }
   const Eigen::VectorXd shares = estimate.stddev.cwiseQuotient(wide);
   if (estimate.correlation.size() > 0) {
     estimate.correlation = shares.asDiagonal() * estimate.correlation * shares.asDiagonal();
@@ -147,7 +157,6 @@ void widen(const std::vector<double>& scatter, Estimate& estimate) {
   estimate.stddev = wide;
   estimate.draws = {};
   estimate.mixture = estimate.ridge = {};
-  estimate.interval_factors = {};
 }
 
 void addDisagreement(const InferredMeasurement& inferred, Statuses& statuses) {
@@ -223,6 +232,15 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
     statuses.emplace_back(toString(TrustStatus::kOk));
   }
   return statuses;
+}
+
+bool misleads(const std::vector<std::string>& statuses) {
+  return std::any_of(statuses.begin(), statuses.end(), [](const std::string& status) {
+    const std::vector<NoticeText>& notices = listNotices();
+    return std::any_of(notices.begin(), notices.end(), [&](const NoticeText& notice) {
+      return notice.is_status && notice.severity == Severity::kMisleading && status == notice.name;
+    });
+  });
 }
 
 void dropExcuses(std::vector<std::string>& statuses) {

@@ -44,6 +44,9 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred);
 /// Whether the most severe of the statuses is model_mismatch: then no other remedy helps.
 bool isMismatch(const std::vector<std::string>& statuses);
 
+/// Whether one of the statuses says that results may be wrong (Severity::kMisleading).
+bool misleads(const std::vector<std::string>& statuses);
+
 /// Without what noise and sensors were taken for where a term explains a measurement in their place.
 void dropExcuses(std::vector<std::string>& statuses);
 

@@ -21,7 +21,7 @@ ALLOWED = {
     "estimation": {"base", "experiment", "simulation", "data", "kernels"},
     "analysis": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
     "store": {"base", "experiment", "simulation", "data", "estimation", "kernels"},
-    "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "store"},
+    "inference": {"base", "experiment", "simulation", "models", "data", "estimation", "analysis", "store"},
     "diagnosis": {"base", "experiment", "simulation", "models", "data", "estimation", "inference", "kernels"},
     "tracking": {
         "base",

@@ -63,8 +63,7 @@ const std::vector<NoticeText> kStatuses{
      "several separate sets of parameter values fit the measurement",
      "Measure another output that separates them, or exclude all but one by the bounds.",
      "The model has a symmetry, or its response repeats itself, as an oscillation by another period does."},
-    {Notice::kTrialsDisagree, "trials_disagree", true, kMisleading,
-     "the {0} recordings disagree ({1}): together they fit worse than each alone, by {2:.4g} of chi-square",
+    {Notice::kTrialsDisagree, "trials_disagree", true, kMisleading, "the {0} recordings disagree ({1}): {2}",
      "Ask what the model lacks: twinmap diagnose FILE RECORDINGS.",
      "Each recording is explained by parameters of its own, as where friction has another shape than the "
      "model's."},

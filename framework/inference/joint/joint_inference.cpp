@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <boost/math/distributions/students_t.hpp>
-#include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -94,13 +92,15 @@ std::vector<Contradiction> findContradictions(const std::vector<RecordingInferen
   return largest;
 }
 
-std::vector<ScatterEstimate> combineRecordings(const std::vector<RecordingInference>& alone, Index shared) {
+std::vector<ScatterEstimate> combineRecordings(const std::vector<RecordingInference>& alone,
+                                               const std::vector<ParameterSpec>& parameters) {
   const std::vector<std::size_t> reliable = listReliable(alone);
   std::vector<ScatterEstimate> combined;
   if (reliable.size() < 2) {
     return combined;
   }
-  for (Index p = 0; p < shared; ++p) {
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const auto p = static_cast<Index>(j);
     VectorXd values(static_cast<Index>(reliable.size())), stddevs(values.size());
     for (Index i = 0; i < values.size(); ++i) {
       const SimulatorPosterior& posterior = alone[reliable[static_cast<std::size_t>(i)]].posterior;
@@ -108,6 +108,7 @@ std::vector<ScatterEstimate> combineRecordings(const std::vector<RecordingInfere
       stddevs[i] = posterior.stddev[p];
     }
     combined.push_back(combineScattered(values, stddevs));
+    combined.back().bounds = parameters[j].bounds;
   }
   return combined;
 }
@@ -131,32 +132,6 @@ void requireSameParameters(const std::vector<ParameterSpec>& parameters,
 }
 
 }  // namespace
-
-ScatterEstimate combineScattered(const VectorXd& values, const VectorXd& stddevs) {
-  const auto degrees = static_cast<double>(values.size() - 1);
-  ScatterEstimate estimate;
-  VectorXd weights;
-  const auto calcSpread = [&](double variance) {  // about the weighted mean: Cochran's Q
-    weights = (stddevs.array().square() + variance).inverse();
-    estimate.mean = weights.dot(values) / weights.sum();
-    return weights.dot((values.array() - estimate.mean).square().matrix());
-  };
-  const double stated = calcSpread(0.0);
-  estimate.ratio = std::sqrt(stated / degrees);
-  if (stated > degrees) {
-    const auto excess = [&](double variance) { return calcSpread(variance) - degrees; };
-    const double all = (values.array() - values.mean()).square().sum();
-    const auto [low, high] =
-        boost::math::tools::bisect(excess, 0.0, all, boost::math::tools::eps_tolerance<double>());
-    estimate.scatter = std::sqrt(0.5 * (low + high));
-  }
-  const double spread = calcSpread(estimate.scatter * estimate.scatter) / degrees;
-  // never narrower than the stated standard deviations allow (Röver, Knapp and Friede 2015)
-  estimate.stddev = std::sqrt(std::max(1.0, spread) / weights.sum());
-  const boost::math::students_t_distribution<> few(degrees);
-  estimate.factor = {boost::math::quantile(few, 0.75), boost::math::quantile(few, 0.975)};
-  return estimate;
-}
 
 std::vector<std::string> listRecordingFaults(const std::vector<RecordingInference>& alone) {
   std::vector<std::string> listed;
@@ -358,10 +333,10 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
   leaveClockBounds(problem, alone, inferred.together.posterior->fit->beyond);
   inferred.contradictions = findContradictions(inferred.alone, shared);
   nameNoise(alone, inferred);
-  inferred.scatter = combineRecordings(inferred.alone, shared);
-  for (RecordingInference& one : inferred.alone) {
-    for (std::size_t p = 0; p < inferred.scatter.size() && inferred.disagrees(); ++p) {
-      one.inferred.scatter.push_back(inferred.scatter[p].scatter);
+  inferred.scatter = combineRecordings(inferred.alone, getParameters());
+  if (inferred.disagrees()) {
+    for (RecordingInference& one : inferred.alone) {
+      one.inferred.scatter = inferred.scatter;
     }
   }
   return inferred;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/estimation/posterior/agreement.hpp"
+#include "framework/estimation/scatter.hpp"
 #include "framework/experiment/yaml/yaml_node.hpp"
 #include "framework/inference/joint/recording_inference.hpp"
 #include "framework/inference/known_value.hpp"
@@ -26,14 +27,6 @@ struct Recording {
 struct Contradiction {
   std::size_t parameter = 0, first = 0, second = 0;
   double distance = 0.0;  ///< in standard deviations of the difference
-};
-
-/// A parameter's mean over recordings that scatter more than their standard deviations say.
-struct ScatterEstimate {
-  double mean = 0.0, stddev = 0.0;
-  IntervalFactor factor{};  ///< of a Student distribution, as recordings are few
-  double scatter = 0.0;     ///< standard deviation between recordings that their own does not explain
-  double ratio = 0.0;       ///< of their scatter to that which their own explains: about 1 where they agree
 };
 
 /// What several recordings say about one machine.
@@ -64,12 +57,6 @@ std::vector<std::string> listRecordingFaults(const std::vector<RecordingInferenc
 /// kMismatchLevel), listRecordingFaults(), "unreliable", "multimodal", "uninformative"; {"ok"} where nothing
 /// is. Of the first `parameters`, the machine's.
 std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
-
-/// The mean of values with standard deviations that scatter more than these say: variance between them by
-/// Paule and Mandel (1982), which holds where standard deviations differ by orders of magnitude, interval by
-/// Hartung and Knapp (2001), which holds for few values as well.
-/// At least two values; stddevs above 0.
-ScatterEstimate combineScattered(const Eigen::VectorXd& values, const Eigen::VectorXd& stddevs);
 
 /// Infers one machine from several recordings together, each with an initial state, an offset ... (nuisance
 /// parameters) of its own, by simulation alone. For one thread, which OpenMP's others help.

@@ -28,20 +28,22 @@ InferredMeasurement takeTogether(const JointInference& inferred) {
   return together;
 }
 
-/// Of recordings that scatter: independent, with the intervals of so few, within the bounds.
+/// Of recordings that scatter: what the next one would say, as a model that lacks something is as wrong of
+/// their mean as of any of them. Independent, with the intervals of so few, within the bounds.
 Estimate combineEstimate(const JointInference& inferred, const std::vector<ParameterSpec>& parameters) {
   const auto p = static_cast<Index>(parameters.size());
   Estimate estimate{VectorXd(p), VectorXd(p)};
   estimate.correlation = MatrixXd::Identity(p, p);
-  estimate.limits.lower = calcLowerBounds(parameters);
-  estimate.limits.upper = estimate.limits.lower + calcWidths(parameters);
+  estimate.limits = {VectorXd(p), VectorXd(p)};
   estimate.estimator = "scatter";
   estimate.interval_factors = {MatrixXd(p, 1), MatrixXd(p, 1)};
   for (Index i = 0; i < p; ++i) {
     const ScatterEstimate& one = inferred.scatter[static_cast<std::size_t>(i)];
     estimate.mean[i] = one.mean;
-    estimate.stddev[i] = one.stddev;
-    estimate.interval_factors.set(i, 0, one.factor);
+    estimate.stddev[i] = one.calcStddevOfNext();
+    estimate.limits.lower[i] = one.bounds.lower;
+    estimate.limits.upper[i] = one.bounds.upper;
+    estimate.interval_factors.set(i, 0, one.calcFactor());
   }
   return estimate;
 }
@@ -93,7 +95,8 @@ std::string describeMissing(const JointInference& inferred) {
 std::string explainDisagreement(const JointInference& inferred, const std::vector<ParameterSpec>& parameters,
                                 bool misfits) {
   return explainNotice(Notice::kTrialsDisagree, inferred.alone.size(), describeLevel(*inferred.agreement),
-                       inferred.agreement->excess) +
+                       fmt::format("together they fit worse than each alone, by {:.4g} of chi-square",
+                                   inferred.agreement->excess)) +
          describeContradictions(inferred, parameters) + (misfits ? "" : describeMissing(inferred)) +
          (inferred.scatter.empty() ? "" : "  The intervals below cover the scatter between recordings.\n");
 }

@@ -304,6 +304,17 @@ std::string explainUncalibrated(const InferredMeasurement& inferred) {
   return explainBriefly(Notice::kUncalibrated) + other;
 }
 
+/// By the parameter that scatters most.
+std::string explainDisagreement(const std::vector<ScatterEstimate>& scatter,
+                                const std::vector<ParameterSpec>& parameters) {
+  const auto most = std::max_element(scatter.begin(), scatter.end(),
+                                     [](const auto& a, const auto& b) { return a.ratio < b.ratio; });
+  const std::string& name = parameters[static_cast<std::size_t>(most - scatter.begin())].name.text;
+  return explainNotice(
+      Notice::kTrialsDisagree, most->degrees + 1, describePValue(calcScatterPValue(*most), kSameNumber),
+      fmt::format("{} scatters by {:.3g} of its sds, which the interval covers", name, most->ratio));
+}
+
 /// "" of those that are explained with the numbers they concern: makeInferenceTable().
 std::string explainStatus(const std::string& status, const InferredMeasurement& inferred,
                           const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
@@ -340,6 +351,9 @@ std::string explainStatus(const std::string& status, const InferredMeasurement& 
   }
   if (is(Notice::kUncalibrated)) {
     return explainUncalibrated(inferred);
+  }
+  if (is(Notice::kTrialsDisagree)) {
+    return explainDisagreement(inferred.scatter, parameters);
   }
   if (is(Notice::kPosteriorUncalibrated)) {
     return explainNotice(Notice::kPosteriorUncalibrated, inferred.posterior->doubt);

@@ -98,6 +98,25 @@ class Joint(FolderTestCase):
         self.assertTrue(found["agreement"]["agrees"])
         self.assertLess(abs(found["parameters"]["k"]["mean"] - 100), 4 * found["parameters"]["k"]["sd"])
 
+    def test_windows_that_are_inferred_one_by_one_say_whether_they_agree(self):
+        first, second = (path.read_text().splitlines()[1:] for path in (self.a, self.other))
+        later = [f"{float(line.split(',')[0]) + 2:.2f},{line.split(',')[1]}" for line in second]
+        both = self.folder / "both.csv"
+        both.write_text("\n".join(["t,x", *first, *later]) + "\n")
+        windows = [
+            json.loads(line)
+            for line in self.infer(self.experiment, both, "--start", 0, "--start", 2, "--json").splitlines()
+        ]
+        for one, other in (windows, windows[::-1]):
+            self.assertEqual(one["statuses"], ["trials_disagree"])
+            k = one["parameters"]["k"]
+            self.assertTrue(k["lower"] < other["parameters"]["k"]["mean"] < k["upper"])
+        table = self.infer(self.experiment, both, "--start", 0, "--start", 2)
+        self.assertIn("k scatters by", table)
+        self.assertIn(f"twinmap diagnose {self.experiment} {both} --start 0 --start 2\n", table)
+        agreeing = self.infer(self.experiment, self.long, "--start", 0, "--start", 2, "--json").splitlines()
+        self.assertEqual([json.loads(line)["status"] for line in agreeing], ["ok", "ok"])
+
     def test_the_estimate_is_a_prior_of_the_next_one(self):
         (self.folder / "first.json").write_text(self.infer(self.experiment, self.a, "--json"))
         second = self.folder / "second.yaml"

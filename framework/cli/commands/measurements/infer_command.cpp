@@ -19,6 +19,7 @@
 #include "framework/diagnosis/missing_term.hpp"
 #include "framework/diagnosis/text/diagnosis_text.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/joint/compared_windows.hpp"
 #include "framework/inference/known_value.hpp"
 #include "framework/inference/measurement/inference_source.hpp"
 #include "framework/inference/measurement/measurement_stream.hpp"
@@ -118,26 +119,62 @@ class InferCommand {
   }
 
  private:
+  /// All its windows are inferred before any is printed: together they say whether they agree.
   void inferTable(const Table& table) {
+    std::vector<InferredMeasurement> windows;
+    std::vector<Window> others;  // what else there is of each
     for (const std::optional<double>& start : starts_) {
+      Window window{start, {}, ""};
+      InferredMeasurement inferred;
       try {
-        WaitingLine waiting("infer " + nameWindow(table.source, start));
-        InferredMeasurement inferred = session_->infer(table, start, known_);
-        inferred.asked = describeAsked(table.source, start);
-        std::optional<RecordedFeatures> recording;
-        if (tests_model_) {
-          waiting.describe("look for what the model lacks, " + nameWindow(table.source, start));
-          recording = testModel(source_.getReader(), table, start, known_, inferred);
-        }
-        inferred.asked.diagnoses = recording && diagnoses_;
-        waiting.clear();
-        print(inferred, inferred.asked.diagnoses ? &*recording : nullptr);
-        draw(table, inferred);
-        ++count_;
+        inferred = inferWindow(table, window, windows);
       } catch (const std::exception& error) {
-        reportError(table.source, source_.getReader().getStatedStart(start), error.what());
+        window.error = error.what();
       }
+      windows.push_back(std::move(inferred));
+      others.push_back(std::move(window));
     }
+    compareWindows(getModel().parameters, windows);
+    for (std::size_t i = 0; i < windows.size(); ++i) {
+      finishWindow(table, windows[i], others[i]);
+    }
+  }
+
+  struct Window {
+    std::optional<double> start;
+    std::optional<RecordedFeatures> recording;  // to be diagnosed, after a misfit
+    std::string error;                          // "" of none
+  };
+
+  void finishWindow(const Table& table, const InferredMeasurement& inferred, const Window& window) {
+    if (!window.error.empty()) {
+      reportError(table.source, source_.getReader().getStatedStart(window.start), window.error);
+      return;
+    }
+    print(inferred, inferred.asked.diagnoses ? &*window.recording : nullptr);
+    draw(table, inferred);
+    ++count_;
+  }
+
+  /// before: windows that are finished, which an interrupt prints.
+  InferredMeasurement inferWindow(const Table& table, Window& window,
+                                  const std::vector<InferredMeasurement>& before) {
+    const std::optional<double>& start = window.start;
+    WaitingLine waiting("infer " + nameWindow(table.source, start), [&] {
+      for (const InferredMeasurement& one : before) {
+        if (!one.source.empty()) {  // else it could not be used
+          printer_.print(one, source_.getReader().getExtractor().getInfos(), false);
+        }
+      }
+    });
+    InferredMeasurement inferred = session_->infer(table, start, known_);
+    inferred.asked = describeAsked(table.source, start);
+    if (tests_model_) {
+      waiting.describe("look for what the model lacks, " + nameWindow(table.source, start));
+      window.recording = testModel(source_.getReader(), table, start, known_, inferred);
+    }
+    inferred.asked.diagnoses = window.recording && diagnoses_;
+    return inferred;
   }
 
   /// For the page, where one is wanted.

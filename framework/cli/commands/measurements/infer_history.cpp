@@ -8,11 +8,12 @@
 namespace twinmap::cli {
 namespace {
 
-bool misleads(const std::string& status) {
-  const std::vector<NoticeText>& notices = listNotices();
-  return std::any_of(notices.begin(), notices.end(), [&](const NoticeText& notice) {
-    return notice.is_status && notice.severity == Severity::kMisleading && status == notice.name;
-  });
+/// Windows that disagree count: their standard deviations have the scatter.
+bool counts(std::vector<std::string> statuses) {
+  statuses.erase(
+      std::remove(statuses.begin(), statuses.end(), std::string(getNotice(Notice::kTrialsDisagree).name)),
+      statuses.end());
+  return !misleads(statuses);
 }
 
 }  // namespace
@@ -24,8 +25,8 @@ void InferHistory::add(const InferredMeasurement& inferred) {
   }
   const Bounds95 bounds = estimate.calcBounds95();
   history_.points.push_back({inferred.source, inferred.start, joinStatuses(estimate.statuses, ", "),
-                             std::none_of(estimate.statuses.begin(), estimate.statuses.end(), misleads),
-                             estimate.mean, estimate.stddev, bounds.lower, bounds.upper});
+                             counts(estimate.statuses), estimate.mean, estimate.stddev, bounds.lower,
+                             bounds.upper});
   if (!inferred.posterior) {
     return;
   }
