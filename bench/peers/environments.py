@@ -62,6 +62,10 @@ class Environments:
         for package in packages.glob("*.deb"):
             run("dpkg", "-x", package, self.folder / "torch-root")
 
+    def get_twinmap_version(self):
+        command = [self.get_variables("plain")["TWINMAP"], "--version"]
+        return run(*command, capture_output=True, text=True).stdout.strip()
+
     def list_versions(self, name):
         if not (self.folder / f"{name}.ready").exists():
             return []

@@ -7,7 +7,9 @@ from pathlib import Path
 SOURCE = Path(os.environ["TWINMAP_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "bench" / "peers"))
 from again import calc_difference, is_same  # noqa: E402
+from cases import KINDS  # noqa: E402
 from judge import compare, judge, list_better  # noqa: E402
+from peers import PEERS  # noqa: E402
 
 
 def answer(machine, mean, sd, warnings=(), intervals=None):
@@ -62,6 +64,23 @@ class Judge(unittest.TestCase):
     def test_less_time_is_better(self):
         quick = judge([dict(answer(1, 0.1, 1.0), seconds=0.5)], truths(0))
         self.assertEqual(compare(quick, judge([answer(1, 0.1, 1.0)], truths(0))), ["time"])
+
+
+class Machines(unittest.TestCase):
+    def count(self, peer, kind):
+        (one,) = [each for each in PEERS if each.name == peer]
+        return one.count_machines(next(each for each in KINDS if each.name == kind))
+
+    def test_forty_where_an_answer_is_cheap(self):
+        self.assertEqual([self.count("twinmap_infer", kind) for kind in ("closed_form", "servo_axis")], [40, 40])
+
+    def test_ten_of_profiles_and_sbi_and_of_what_is_slow(self):
+        self.assertEqual([self.count(peer, "two_beam") for peer in ("pypesto", "sbi_500", "sbi_10000")], [10, 10, 10])
+        self.assertEqual(self.count("mujoco", "servo_axis"), 10)
+        self.assertEqual(self.count("twinmap_infer", "seven_joint_arm"), 10)
+
+    def test_what_is_slow_is_a_case(self):
+        self.assertLessEqual({name for peer in PEERS for name in peer.slow}, {kind.name for kind in KINDS})
 
 
 class Again(unittest.TestCase):
