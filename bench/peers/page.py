@@ -92,7 +92,8 @@ class Page:
 
     def explain_empty(self, peer, kind):
         known = {**self.remarks["not run"], **self.remarks.get(kind.name, {}).get("not run", {})}
-        return peer.explain_lack(kind) or known.get(peer.name, known["any"])
+        lack = peer.explain_lack(kind) or self.table.environments.explain_lack(peer.environment)
+        return lack or known.get(peer.name, known["any"])
 
     def make_overview(self):
         names = [kind.name for kind in KINDS]

@@ -139,7 +139,8 @@ class RealMachine:
 
 def measure(machine, recordings, store, environments):
     for name in ASKED:
-        if machine in ONLY.get(name, MACHINES):
+        is_ready = environments.is_ready("figaroh" if name == "figaroh" else "plain")
+        if is_ready and machine in ONLY.get(name, MACHINES):
             RealMachine(machine, recordings, store, environments).ask(name)
 
 

@@ -31,22 +31,19 @@ class Table:
         self.build, self.store = arguments.build.resolve(), arguments.store.resolve()
         self.environments = Environments(self.store / "env", self.build)
         self.machines = arguments.machines
-        self.missing = {}
         sys.path.insert(0, str(self.build / "framework/python"))
 
     def prepare(self, kinds, peers):
         for name in dict.fromkeys(peer.environment for peer in peers):
-            try:
-                self.environments.make(name)
-                print(", ".join(self.environments.list_versions(name)), flush=True)
-            except (OSError, subprocess.CalledProcessError) as error:
-                print(f"{name} cannot be had: {error}", flush=True)
+            self.environments.make(name)
+            versions = self.environments.list_versions(name)
+            print(", ".join(versions) or self.environments.explain_lack(name), flush=True)
         for kind in kinds:
             folder = self.store / "cases" / kind.name
             Maker(kind, folder, self.build / "framework/cli/twinmap").make(min(self.machines, kind.machines))
 
     def answer(self, kind, peer):
-        if peer.explain_lack(kind):
+        if peer.explain_lack(kind) or not self.environments.is_ready(peer.environment):
             return
         out = self.store / "answers" / kind.name / f"{peer.name}.jsonl"
         out.parent.mkdir(parents=True, exist_ok=True)

@@ -1,6 +1,8 @@
 """The figures that bench/peers prints of answers beside true values, on hand-sized cases."""
 import os
+import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -8,6 +10,7 @@ SOURCE = Path(os.environ["TWINMAP_SOURCE_DIR"])
 sys.path.insert(0, str(SOURCE / "bench" / "peers"))
 from again import calc_difference, is_same  # noqa: E402
 from cases import KINDS  # noqa: E402
+from environments import Environments  # noqa: E402
 from judge import compare, judge, list_better  # noqa: E402
 from peers import PEERS  # noqa: E402
 
@@ -81,6 +84,30 @@ class Machines(unittest.TestCase):
 
     def test_what_is_slow_is_a_case(self):
         self.assertLessEqual({name for peer in PEERS for name in peer.slow}, {kind.name for kind in KINDS})
+
+
+class Unreachable(Environments):
+    """A registry that does not answer until it is asked again."""
+
+    asked = 0
+
+    def install(self, name):
+        self.asked += 1
+        if self.asked == 1:
+            raise subprocess.CalledProcessError(100, ["/usr/bin/apt-get", "download"])
+
+
+class Lacks(unittest.TestCase):
+    def test_an_environment_that_cannot_be_had_says_why_until_it_can(self):
+        with tempfile.TemporaryDirectory() as folder:
+            one = Unreachable(Path(folder) / "env", Path(folder))
+            one.make("torch")
+            self.assertEqual(
+                one.explain_lack("torch"), "its environment `torch` cannot be had: `apt-get` ends with status 100"
+            )
+            self.assertFalse(one.is_ready("torch"))
+            one.make("torch")
+            self.assertEqual((one.explain_lack("torch"), one.is_ready("torch")), ("", True))
 
 
 class Again(unittest.TestCase):
