@@ -64,6 +64,15 @@ class Judge(unittest.TestCase):
         self.assertEqual(list_better([answer(1, 0.1, 1.0)], own, truths(0, 0)), [])
         self.assertIn("silent", list_better([answer(2, 0.1, 1.0)], own, truths(0, 0)))
 
+    def test_an_error_is_better_where_chance_does_not_explain_it(self):
+        known = truths(*[0] * 10)
+        own = [answer(machine, 1.0 + 0.1 * machine, 1.0) for machine in range(1, 11)]
+        nearer = [answer(machine, 0.5, 1.0) for machine in range(1, 11)]
+        either = [answer(machine, 0.1 if machine % 2 else 3.0, 1.0) for machine in range(1, 11)]
+        self.assertEqual(list_better(nearer, own, known), ["error"])
+        self.assertEqual(list_better(either, own, known), [])
+        self.assertEqual(list_better(nearer[:3], own, known), [])
+
     def test_less_time_is_better(self):
         quick = judge([dict(answer(1, 0.1, 1.0), seconds=0.5)], truths(0))
         self.assertEqual(compare(quick, judge([answer(1, 0.1, 1.0)], truths(0))), ["time"])
