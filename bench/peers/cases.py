@@ -42,7 +42,6 @@ KINDS = [
         "servo_axis",
         ROOT / "experiments/mechanisms/servo_axis.yaml",
         "a linear axis in its position loop, with winding and friction, 5 parameters",
-        machines=10,
     ),
     Kind("stick_slip", ROOT / "experiments/mechanisms/stick_slip.yaml", "a slide that sticks and slips, 4 parameters"),
     Kind("product", ROOT / "bench/machines/product.yaml", "only the product of m and L is seen, 4 parameters"),

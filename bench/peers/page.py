@@ -10,11 +10,12 @@ from peers import HERE, PEERS
 OWN = "twinmap_infer"
 HEAD = """# Beside what a user would take instead
 
-Written by `bench/peers/run.py BUILD STORE --page docs/benchmarks/peers.md`; a call that was stopped goes on. Each case is drawn up
-to {most} times by seed, simulated by twinmap, and given to all as the same CSV files; a row says of how many machines it is. Scripts are in `bench/peers/scripts`, models in
-`bench/peers/models`, explanations in `bench/peers/remarks.yaml`.
+Written by `bench/peers/run.py BUILD STORE --page docs/benchmarks/peers.md`; a call that was stopped goes on. Machines of a case are
+drawn by seed, simulated by twinmap, and given to all as the same CSV files: 40, but ten of the arm, of profiles, of sbi, and where one takes a peer more than
+ten seconds. `answers` says of how many machines a row is. Scripts are in `bench/peers/scripts`, models in `bench/peers/models`, explanations in
+`bench/peers/remarks.yaml`.
 
-{versions}
+Versions: {versions}. These answers took {hours:.1f} hours of a processor.
 
 - **Error**: median of errors over the [information limit](../explanation/information-limit.md), 1 where it is reached; in brackets the root mean
   square, which one answer in the wrong place makes large. Priors count in the limit, uniform ones by their variance.
@@ -84,9 +85,15 @@ class Page:
                     self.lines[kind.name, peer.name] = lines
                     self.cells[kind.name, peer.name] = judge(lines, self.truths[kind.name])
 
+    def calc_hours(self):
+        """Of a processor, of all answers; training once a case and peer."""
+        alone = sum(line.get("seconds", 0) for lines in self.lines.values() for line in lines)
+        return (alone + sum(lines[0]["shared_seconds"] for lines in self.lines.values())) / 3600
+
     def explain_empty(self, peer, kind):
         known = {**self.remarks["not run"], **self.remarks.get(kind.name, {}).get("not run", {})}
-        return peer.explain_lack(kind) or known.get(peer.name, known["any"])
+        lack = peer.explain_lack(kind) or self.table.environments.explain_lack(peer.environment)
+        return lack or known.get(peer.name, known["any"])
 
     def make_overview(self):
         names = [kind.name for kind in KINDS]
@@ -114,7 +121,17 @@ class Page:
                 lacking.setdefault(why, []).append(peer.title)
         if lacking:
             text += "\nWithout an answer:\n\n" + "".join(f"- {why}: {'; '.join(who)}\n" for why, who in lacking.items())
-        return text + self.make_words(kind) + self.make_remarks(kind) + "\n"
+        return text + self.make_counts(kind) + self.make_words(kind) + self.make_remarks(kind) + "\n"
+
+    def make_counts(self, kind):
+        """Where a store has fewer machines than the command asks about by default."""
+        few = []
+        for peer in PEERS:
+            cell, wanted = self.cells.get((kind.name, peer.name)), peer.count_machines(kind)
+            if cell and cell.asked < wanted:
+                each = f", {cell.seconds:.0f} s each" if cell.seconds >= 5 else ""
+                few.append(f"{peer.title} ({cell.asked} of {wanted}{each})")
+        return f"\nFewer machines than a whole run asks about: {'; '.join(few)}.\n" if few else ""
 
     def make_words(self, kind):
         """What was said against answers."""
@@ -149,7 +166,7 @@ def make_real(store, remark):
 def write_page(table):
     page = Page(table)
     versions = [one for name in ("plain", "torch", "figaroh") for one in table.environments.list_versions(name)]
-    most = max([cell.asked for cell in page.cells.values()], default=0)
-    text = HEAD.format(most=most, versions=f"Versions: {', '.join(versions)}.", overview=page.make_overview())
+    versions.insert(0, table.environments.get_twinmap_version())
+    text = HEAD.format(versions=", ".join(versions), hours=page.calc_hours(), overview=page.make_overview())
     text += "\n" + "\n".join(page.make_case(kind) for kind in KINDS)
     return text + make_real(table.store, page.remarks["real"])

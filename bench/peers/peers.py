@@ -3,6 +3,8 @@ import dataclasses
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+#: Machines of a case where one, or what is trained for all, takes long.
+FEW = 10
 
 
 @dataclasses.dataclass(frozen=True)
@@ -12,8 +14,9 @@ class Peer:
     script: str
     environment: str
     setting: str = ""
-    #: At most so many of a case.
+    #: At most so many of a case, and of those where one takes it more than ten seconds of a processor.
     machines: int = 40
+    slow: tuple = ()
     #: Suffix of the model that it wants of each case in models/; "": twinmap's file.
     model: str = ""
     #: What of twinmap it is compared with.
@@ -25,6 +28,9 @@ class Peer:
 
     def find_model(self, kind):
         return HERE / "models" / f"{kind.name}{self.model}" if self.model else kind.file
+
+    def count_machines(self, kind):
+        return min(kind.machines, FEW if kind.name in self.slow else self.machines)
 
     def explain_lack(self, kind):
         """Why it is not asked about a case; "" where it is."""
@@ -72,7 +78,7 @@ PEERS = [
         "SciPy `least_squares` on `solve_ivp`",
         "scipy_ivp",
         "plain",
-        machines=10,
+        slow=("double_pendulum_mild", "servo_axis", "stick_slip"),
         model="_ode.py",
         cannot={"seven_joint_arm": "its equations of motion were not written by hand"},
     ),
@@ -81,7 +87,7 @@ PEERS = [
         "MuJoCo 4.0 `sysid`",
         "mujoco_sysid",
         "plain",
-        machines=10,
+        slow=("servo_axis", "stick_slip", "product"),
         model="_mujoco.py",
     ),
     Peer(
@@ -89,7 +95,7 @@ PEERS = [
         "pyPESTO, profiles, on twinmap's simulations",
         "pypesto_profiles",
         "plain",
-        machines=10,
+        machines=FEW,
         cannot=PROFILES,
     ),
     *[
@@ -99,7 +105,7 @@ PEERS = [
             "sbi_npe",
             "torch",
             setting=str(count),
-            machines=10,
+            machines=FEW,
             beside="twinmap_map",
             cannot={**UNKNOWN, **ARM, **ROUGH},
         )
@@ -113,7 +119,6 @@ PEERS = [
         "FIGAROH, torque regression, with priors",
         "figaroh_arm",
         "figaroh",
-        machines=10,
         model="_figaroh.py",
         only=("seven_joint_arm",),
     ),

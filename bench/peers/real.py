@@ -3,7 +3,6 @@
 All give parameters; the prediction fits what each window leaves unknown besides (its initial state), for all alike.
 """
 import json
-import resource
 import signal
 import subprocess
 import sys
@@ -38,6 +37,7 @@ def link(folder, *sources):
     folder.mkdir(parents=True, exist_ok=True)
     for path in (path for source in sources for path in source.iterdir()):
         if not (folder / path.name).exists():
+            (folder / path.name).unlink(missing_ok=True)  # a link whose target was moved
             (folder / path.name).symlink_to(path.resolve())
 
 
@@ -119,9 +119,8 @@ class RealMachine:
         out, variables = self.folder / f"{name}.json", self.environments.get_variables(environment)
         command = [self.environments.get_python(environment), HERE / "scripts" / script, *arguments, out]
         if not out.exists():
-            limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST))
             try:
-                run(*command, *self.windows["fit"], env=variables, preexec_fn=limit)
+                run("prlimit", f"--cpu={LONGEST}", *command, *self.windows["fit"], env=variables)
             except subprocess.CalledProcessError as error:
                 is_late = error.returncode in (-signal.SIGXCPU, -signal.SIGKILL)
                 why = f"stopped after {LONGEST} s" if is_late else f"ended with status {error.returncode}"
@@ -138,9 +137,10 @@ class RealMachine:
         (self.folder / "friction.yaml").write_text(yaml.safe_dump(model, sort_keys=False))
 
 
-def measure(recordings, store, environments, asked):
-    for name in asked:
-        for machine in ONLY.get(name, MACHINES):
+def measure(machine, recordings, store, environments):
+    for name in ASKED:
+        is_ready = environments.is_ready("figaroh" if name == "figaroh" else "plain")
+        if is_ready and machine in ONLY.get(name, MACHINES):
             RealMachine(machine, recordings, store, environments).ask(name)
 
 

@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """Answers of twinmap and of what a user would take instead, on the same recordings, and the page that compares them.
 
-Usage: bench/peers/run.py BUILD STORE [--peers A,B] [--cases A,B] [--machines N] [--real FOLDER] [--page docs/benchmarks/peers.md [--again OTHER]]
+Usage: bench/peers/run.py BUILD STORE [--peers A,B] [--cases A,B] [--machines N] [--jobs N] [--real FOLDER]
+                          [--page docs/benchmarks/peers.md [--again OTHER]]
 
 BUILD is a build of twinmap with its Python package (build/release). STORE, outside of the source tree, keeps environments,
-recordings and answers (a line of JSON each): a call that was stopped goes on where it ended. --real: the recordings of the real
+recordings and answers (a line of JSON each): a call that was stopped goes on where it ended. --machines: at most so many of a
+case, of 40 or, where one takes long, 10. --jobs: so many at a time, of a core each. --real: the recordings of the real
 machines, as bench/real_machines.py takes them, which are not part of the project. --page writes the page from what
 STORE has, and --only-page runs nothing. --again: the page says in what answers differ from those of the store OTHER, a second
 run. Versions are pinned in bench/peers/requirements and printed.
@@ -12,6 +14,8 @@ run. Versions are pinned in bench/peers/requirements and printed.
 import argparse
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import again
@@ -27,26 +31,23 @@ class Table:
         self.build, self.store = arguments.build.resolve(), arguments.store.resolve()
         self.environments = Environments(self.store / "env", self.build)
         self.machines = arguments.machines
-        self.missing = {}
         sys.path.insert(0, str(self.build / "framework/python"))
 
     def prepare(self, kinds, peers):
         for name in dict.fromkeys(peer.environment for peer in peers):
-            try:
-                self.environments.make(name)
-                print(", ".join(self.environments.list_versions(name)), flush=True)
-            except (OSError, subprocess.CalledProcessError) as error:
-                print(f"{name} cannot be had: {error}", flush=True)
+            self.environments.make(name)
+            versions = self.environments.list_versions(name)
+            print(", ".join(versions) or self.environments.explain_lack(name), flush=True)
         for kind in kinds:
             folder = self.store / "cases" / kind.name
             Maker(kind, folder, self.build / "framework/cli/twinmap").make(min(self.machines, kind.machines))
 
     def answer(self, kind, peer):
-        if peer.explain_lack(kind):
+        if peer.explain_lack(kind) or not self.environments.is_ready(peer.environment):
             return
         out = self.store / "answers" / kind.name / f"{peer.name}.jsonl"
         out.parent.mkdir(parents=True, exist_ok=True)
-        machines = min(self.machines, kind.machines, peer.machines)
+        machines = min(self.machines, peer.count_machines(kind))
         command = [
             self.environments.get_python(peer.environment),
             HERE / "scripts" / f"{peer.script}.py",
@@ -71,6 +72,15 @@ def choose(values, names):
     return [one for one in values if one.name in wanted]
 
 
+def ask(table, kinds, peers, arguments):
+    """So many jobs at a time; none waits for another."""
+    jobs = [partial(table.answer, kind, peer) for peer in peers for kind in kinds]
+    if arguments.real:
+        jobs += [partial(real.measure, name, arguments.real, table.store, table.environments) for name in real.MACHINES]
+    with ThreadPoolExecutor(arguments.jobs) as pool:
+        list(pool.map(lambda job: job(), jobs))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path)
@@ -78,6 +88,7 @@ def main():
     parser.add_argument("--peers", help="names, with commas; else all")
     parser.add_argument("--cases", help="names, with commas; else all")
     parser.add_argument("--machines", type=int, default=40)
+    parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--real", type=Path)
     parser.add_argument("--page", type=Path)
     parser.add_argument("--again", type=Path)
@@ -87,11 +98,7 @@ def main():
     table = Table(arguments)
     if not arguments.only_page:
         table.prepare(kinds, peers)
-        for peer in peers:
-            for kind in kinds:
-                table.answer(kind, peer)
-        if arguments.real:
-            real.measure(arguments.real, table.store, table.environments, real.ASKED)
+        ask(table, kinds, peers, arguments)
     if arguments.page:
         text = write_page(table)
         text += again.describe(table.store, arguments.again.resolve()) if arguments.again else ""

@@ -24,6 +24,8 @@ STEPS = ProfileOptions(
     max_step_size_relative=5e-2,
     step_size_precheck_mode="off",
 )
+#: The defaults, for a profile that is flat up to the bounds: STEPS take some 10000 fits along it.
+WIDE_STEPS = ProfileOptions(default_step_size_absolute=0, step_size_precheck_mode="off")
 
 
 def prepare(case):
@@ -59,13 +61,22 @@ def make_unknown(case, simulate, measured):
     return pypesto.Problem(objective, *bounds, x_names=[*case.names, "log_sd"]), ScipyOptimizer("L-BFGS-B")
 
 
+def choose_steps(problem, best):
+    """Of each parameter: wide where the Jacobian leaves its sd as wide as its bounds."""
+    if best.sres is None:
+        return [STEPS] * len(best.x)
+    _, s, vt = np.linalg.svd(best.sres, full_matrices=False)
+    sds = np.sqrt(np.diag((vt.T / s**2) @ vt))
+    return [WIDE_STEPS if sd > width else STEPS for sd, width in zip(sds, problem.ub - problem.lb)]
+
+
 def profile(problem, optimizer, names):
     """Best values, sds, intervals by level, and what is said, of the parameters that are named, which are the first."""
     result = minimize(problem, optimizer, n_starts=STARTS, progress_bar=False)
-    count = len(names)
-    result = parameter_profile(
-        problem, result, optimizer, profile_index=np.arange(count), profile_options=STEPS, progress_bar=False
-    )
+    count, steps = len(names), choose_steps(problem, result.optimize_result.list[0])
+    for i in range(count):
+        options = {"profile_index": np.array([i]), "profile_options": steps[i], "profile_list": 0 if i else None}
+        result = parameter_profile(problem, result, optimizer, progress_bar=False, **options)
     intervals = {95: [], 50: []}
     for level, bounds in intervals.items():
         for i, one in enumerate(result.profile_result.list[0][:count]):
