@@ -1,10 +1,17 @@
-"""Checks that folders and functions keep a size that a reader can hold: 4 files or more, at most 50 lines."""
+"""Checks that folders and functions keep a size that a reader can hold: 4 files or more, at most 50 lines.
+
+And that the rooms that judge measurements do not grow by rules: 250 named numbers together. Who adds one finds another that
+means the same, follows from others, or moves no row of bench/posterior_rows.py and bench/diagnosis.py.
+"""
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 
-LEAST_FILES, MOST_LINES = 4, 50
+LEAST_FILES, MOST_LINES, MOST_NUMBERS = 4, 50, 250
+JUDGING = ("framework/estimation/", "framework/inference/", "framework/diagnosis/")
+NAMED_NUMBER = re.compile(r"constexpr [^=]*\bk[A-Z]")
 # An example to copy.
 NOT_COUNTED = {"framework/c_api/example"}
 NOT_FUNCTIONS = {"framework/export/runtime/fmi3.c"}  # ctags takes its macros for functions
@@ -60,10 +67,17 @@ def check_functions(root, files):
         yield f"ctags found {count} functions only"
 
 
+def check_numbers(root, files):
+    judging = [root / f for f in files if str(f).startswith(JUDGING) and f.suffix in (".cpp", ".hpp")]
+    count = sum(bool(NAMED_NUMBER.search(line)) for f in judging for line in f.read_text().splitlines())
+    if count > MOST_NUMBERS:
+        yield f"{count} named numbers in {', '.join(JUDGING)}: more than {MOST_NUMBERS}"
+
+
 def main():
     root = Path(sys.argv[1]).resolve()
     files = list_tracked(root)
-    errors = [*check_folders(files), *check_functions(root, files)]
+    errors = [*check_folders(files), *check_functions(root, files), *check_numbers(root, files)]
     print("\n".join(errors) or f"{len(files)} files are of a size that one can read.")
     sys.exit(bool(errors) or len(files) < 10)
 
