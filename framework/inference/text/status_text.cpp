@@ -413,7 +413,8 @@ std::string describeJudgement(const InferredMeasurement& inferred, const std::ve
 std::string describeTrust(const InferredMeasurement& inferred, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features) {
   const Estimate estimate = selectEstimate(inferred);
-  std::string text = inferred.source + ": " + describeJudgement(inferred, estimate.statuses) + "\n";
+  const std::string window = inferred.asked.starts.empty() ? "" : " from " + toText(inferred.start) + " s";
+  std::string text = inferred.source + window + ": " + describeJudgement(inferred, estimate.statuses) + "\n";
   for (const std::string& against : inferred.against) {
     text += "  " + against + "\n";
   }

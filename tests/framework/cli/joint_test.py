@@ -112,6 +112,8 @@ class Joint(FolderTestCase):
             k = one["parameters"]["k"]
             self.assertTrue(k["lower"] < other["parameters"]["k"]["mean"] < k["upper"])
         table = self.infer(self.experiment, both, "--start", 0, "--start", 2)
+        for start in (0, 2):
+            self.assertIn(f"{both} from {start} s: trials_disagree", table)
         self.assertIn("k scatters by", table)
         self.assertIn(f"twinmap diagnose {self.experiment} {both} --start 0 --start 2\n", table)
         agreeing = self.infer(self.experiment, self.long, "--start", 0, "--start", 2, "--json").splitlines()
