@@ -94,7 +94,7 @@ TermCandidate makeTilt(const ModelSizes& sizes, const Eigen::Vector3d& axis, con
   tilt.term = fmt::format("tilt.{}", name);
   tilt.meaning = fmt::format("gravity turned by c about the ground's {}", name);
   tilt.unit = "rad";
-  tilt.size = kLargeShare;
+  tilt.size = kLargeTilt;
   tilt.add = [turned](ModelSpec& model, const std::string& coefficient, const std::vector<std::string>&) {
     for (std::size_t i = 0; i < 3; ++i) {
       const double part = turned[static_cast<Eigen::Index>(i)];

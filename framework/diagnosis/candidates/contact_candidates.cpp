@@ -84,7 +84,7 @@ TermCandidate makePower(const std::string& name, std::size_t contact, const Cont
   candidate.term = "contact_power." + name;
   candidate.meaning = "the contact's force grows with the power 1 + c of what it is";
   candidate.unit = "1";
-  candidate.size = kLargeShare;
+  candidate.size = kHertz;
   candidate.add = makeAdd(raisePower, contact, sizes.force);
   return candidate;
 }

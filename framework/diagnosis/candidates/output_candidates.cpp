@@ -134,7 +134,7 @@ void addClock(const std::vector<OutputText>& texts, std::vector<TermCandidate>& 
   clock.term = "clock.outputs";
   clock.meaning = "the recorder of the outputs sees time pass faster by the factor 1 + c";
   clock.unit = "1";
-  clock.size = kLargeShare;
+  clock.size = kLargeDrift;
   clock.add = [texts](ModelSpec& changed, const std::string& coefficient, const std::vector<std::string>&) {
     for (std::size_t i = 0; i < texts.size(); ++i) {
       addToOutput(changed, i, coefficient + "*t*" + texts[i].rate);

@@ -11,9 +11,11 @@ namespace twinmap {
 /// Of the duration: what recordings are read beside it, and signals go on by, for the delays that are tried.
 constexpr double kDelayMargin = 0.25;
 
-/// Sizes of coefficients that are large: a share of what a gain, a mass, an offset, a power or a clock is of,
-/// or of gravity; of the duration, a delay; and the shortest lag that is scanned.
-constexpr double kLargeShare = 0.1, kLongDelay = 0.005, kShortestLag = 0.002;
+/// Sizes of coefficients that are large: a share of what a gain, a mass or an offset is of; of the duration,
+/// a delay; and the shortest lag that is scanned. Of gravity rad, which a spirit level shows at once; of a
+/// clock; of a contact's power, as spheres have 1.5 in the place of 1.
+constexpr double kLargeShare = 0.1, kLongDelay = 0.005, kShortestLag = 0.002, kLargeTilt = 0.02,
+                 kLargeDrift = 0.01, kHertz = 0.5;
 
 /// OwnScale::reach of what is limited: a limit near 0 would be a gain with a step at 0, a dead zone as wide
 /// as the signal a gain.
