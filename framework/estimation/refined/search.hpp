@@ -25,16 +25,15 @@ struct SearchEnd {
 };
 
 /// The least misfit from `start` (s, half-widths) by Levenberg and Marquardt's method within the limits of
-/// the box. An iteration linearises the misfit, then tries four dampings at once and takes the best; a step
-/// is at most 0.3 half-widths in any parameter, because a linear model that reaches further is not to be
-/// believed. It has converged where the Gauss-Newton step, parameters at a limit held, is below 0.03 standard
-/// deviations in every parameter; and also where no step improves the misfit any more, or the iterations are
-/// used up, but that step is below 0.3: on chaotic responses the error of the integration makes the misfit
-/// rough, which hides smaller improvements. What such a step leaves open is `rest`, part of the answer's
-/// uncertainty. Where a limit stops a step of more than one standard deviation there is no minimum that a
-/// covariance could describe: that has not converged. A simulation that fails is a step not taken.
-/// Cost: a batch of four simulations with derivatives an iteration in lanes, which costs what one does; else
-/// four simulations and then one with derivatives. One to three iterations from a good start.
+/// the box. An iteration linearises the misfit, then tries three dampings at once and takes the best
+/// (DampedSteps). It has converged where the Gauss-Newton step, parameters at a limit held, is below 0.03
+/// standard deviations in every parameter; and also where no step improves the misfit any more, or the
+/// iterations are used up, but that step is below 0.3: on chaotic responses the error of the integration
+/// makes the misfit rough, which hides smaller improvements. What such a step leaves open is `rest`, part of
+/// the answer's uncertainty. Where a limit stops a step of more than one standard deviation there is no
+/// minimum that a covariance could describe: that has not converged. A simulation that fails is a step not
+/// taken. Cost: a batch of three simulations with derivatives an iteration in lanes, which costs what one
+/// does; else three simulations and then one with derivatives. One to three iterations from a good start.
 SearchEnd search(Misfit& misfit, const Eigen::VectorXd& start, int max_iterations = 30);
 
 }  // namespace twinmap

@@ -34,8 +34,8 @@ struct ClockedFit {
 ClockedFit linearizeClocked(const RecordedSamples& recorded, const Eigen::VectorXd& point,
                             const std::vector<ClockFault>& faults);
 
-/// Gauss and Newton's steps from a point on, halved until the misfit falls. Not given where that cannot be
-/// simulated.
+/// The least misfit by searches (search()) from a point on, each about the sizes of the faults that the last
+/// one found, as these decide which samples can be simulated. Not given where that point cannot be.
 ClockedFit fitClock(const RecordedSamples& recorded, const Eigen::VectorXd& point,
                     const std::vector<ClockFault>& faults);
 

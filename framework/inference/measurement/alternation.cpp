@@ -28,11 +28,11 @@ std::vector<double> listHeights(const VectorXd& times, const VectorXd& values) {
 
 /// By how much each second sample is off; 0 where that is not what it is.
 double calcAlternation(const VectorXd& times, const VectorXd& values) {
-  if (values.size() < kFewestTested) {
-    return 0.0;
-  }
   const std::vector<double> heights = listHeights(times, values);
   const Eigen::Map<const VectorXd> all(heights.data(), static_cast<Index>(heights.size()));
+  if (all.size() < 2 * kPerUnknown) {  // a mean and how they scatter
+    return 0.0;
+  }
   const double mean = all.mean();
   const double stddev = std::sqrt((all.array() - mean).square().mean());
   return std::abs(mean) > kBasinReach * stddev && mean != 0.0 ? mean : 0.0;

@@ -63,7 +63,7 @@ double findBySmoothness(const VectorXd& times, const VectorXd& values) {
 }  // namespace
 
 double findModulus(const VectorXd& times, const VectorXd& values) {
-  if (values.size() < kFewestTested || !values.allFinite() || values.minCoeff() == values.maxCoeff()) {
+  if (values.size() < 2 * kPerUnknown || !values.allFinite() || values.minCoeff() == values.maxCoeff()) {
     return 0.0;
   }
   const double by_size = findBySize(values);
