@@ -2,7 +2,6 @@
 
 Documentation: tutorials 00 (getting started), 04 (density estimators) and 16 (implemented methods) of sbi 0.22: simulate from the prior,
 append_simulations, train, build_posterior, sample. Tried: the default `maf` and `nsf`; the former is kept, as it trains in a fifth of the time.
-Batches are of 50, the default, but of 250 where there are 10000 simulations, so that an epoch has as many steps as with 2000.
 """
 import signal
 import sys
@@ -32,7 +31,7 @@ def prepare(case):
     clean = Simulations(case)(points.double().numpy()) / case.sds()
     noisy = torch.tensor(clean + np.random.default_rng(1).standard_normal(clean.shape), dtype=torch.float32)
     inference = SNPE(prior, show_progress_bars=False)
-    inference.append_simulations(points, noisy).train(training_batch_size=max(50, COUNT // 40))
+    inference.append_simulations(points, noisy).train()
     return inference.build_posterior(), COUNT
 
 

@@ -14,7 +14,7 @@ import h5py
 import numpy as np
 import yaml
 
-from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv, run_once
+from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv, run_once, wait_until
 
 TABLE1 = EXPERIMENTS / "two_beam/table1.yaml"
 CART = EXPERIMENTS / "duffing/cart.yaml"
@@ -205,11 +205,7 @@ class Terminated(TestCase):
             self.folder / "run",
         ]
         child = subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 300
-        while not (self.folder / "run/failures.csv").exists():  # written last before the training
-            self.assertLess(time.monotonic(), deadline)
-            self.assertIsNone(child.poll())
-            time.sleep(0.05)
+        wait_until((self.folder / "run/failures.csv").exists, child)  # written last before the training
         time.sleep(1.0)
         child.terminate()
         _, message = child.communicate(timeout=60)

@@ -6,13 +6,12 @@ import signal
 import socket
 import subprocess
 import tempfile
-import time
 import unittest
 import urllib.error
 import urllib.request
 from pathlib import Path
 
-from support import EXPERIMENTS, QUICK, TWINMAP, call, run_once
+from support import EXPERIMENTS, QUICK, TWINMAP, call, run_once, wait_until
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 
@@ -25,11 +24,14 @@ class Server:
             [TWINMAP, "serve", *map(str, arguments), "--listen", "127.0.0.1:0"], stderr=subprocess.PIPE, text=True
         )
         self.said = []
-        while not (self.said and re.search(r"serving http", self.said[-1])):
-            self.said.append(self.process.stderr.readline())
+        while "serving http" not in self.listen():
             if not self.said[-1]:
                 raise RuntimeError("".join(self.said))
         self.url = re.search(r"http://[^,]+", self.said[-1]).group()
+
+    def listen(self):
+        self.said.append(self.process.stderr.readline())
+        return self.said[-1]
 
     def __enter__(self):
         return self
@@ -132,21 +134,19 @@ class ServeTest(unittest.TestCase):
         self.addCleanup(broker.wait)
         self.addCleanup(broker.terminate)
         client = ["-h", "127.0.0.1", "-p", str(port), "-q", "1"]
-        while subprocess.run(["mosquitto_pub", *client, "-t", "x", "-m", "x"], capture_output=True).returncode != 0:
-            time.sleep(0.1)
+        knock = ["mosquitto_pub", *client, "-t", "x", "-m", "x"]
+        wait_until(lambda: subprocess.run(knock, capture_output=True).returncode == 0, broker)
         listener = subprocess.Popen(
             ["stdbuf", "-oL", "mosquitto_sub", *client, "-t", "plant/cart/answer", "-C", "2", "-d"],
             stdout=subprocess.PIPE,
             text=True,
         )
-        while "SUBACK" not in listener.stdout.readline():
-            pass
+        wait_until(lambda: "SUBACK" in listener.stdout.readline(), listener)
         state = self.folder / "mqtt.h5"
         with Server(
             self.run_folder, "--state", state, "--mqtt", f"127.0.0.1:{port}", "--topic", "plant/cart"
         ) as server:
-            while "subscribed" not in server.said[-1]:
-                server.said.append(server.process.stderr.readline())
+            wait_until(lambda: "subscribed" in server.listen(), server.process)
             for message in (["-f", str(self.files[0])], ["-m", "{"]):
                 subprocess.run(["mosquitto_pub", *client, "-t", "plant/cart", *message], check=True)
             lines = listener.communicate(timeout=600)[0].splitlines()

@@ -69,7 +69,7 @@ trials:
 """
 
 
-def call(*arguments, timeout=1500, **options):
+def call(*arguments, timeout=600, **options):
     return subprocess.run([TWINMAP, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **options)
 
 
@@ -105,6 +105,17 @@ def read_datasets(path):
             lambda name, item: found.update({name: repr(item[()].tolist())}) if hasattr(item, "dtype") else None
         )
     return found
+
+
+def wait_until(reached, child=None, seconds=300):
+    """Fails where that is not reached in time, or its process has ended before."""
+    deadline = time.monotonic() + seconds
+    while not reached():
+        if child is not None and child.poll() is not None and not reached():
+            raise AssertionError(f"the process that was waited for ended with {child.returncode}")
+        if time.monotonic() > deadline:
+            raise AssertionError(f"waited for {seconds} s")
+        time.sleep(0.002)
 
 
 def find_processes(variable):

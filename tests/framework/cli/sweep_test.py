@@ -15,7 +15,7 @@ import time
 import unittest
 
 from case_turns import SEED, take_turn
-from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv, run_once
+from support import EXPERIMENTS, TWINMAP, OwnFolderTestCase, call, read_csv, run_once, wait_until
 
 CART = EXPERIMENTS / "duffing/cart.yaml"
 CHAIN = EXPERIMENTS / "three_mass_chain/modes.yaml"
@@ -369,11 +369,7 @@ class Continuing(SweepTestCase):
     def interrupt(self, name, number, pattern, times=1):
         """Sends the signal once something matches the pattern in the folder."""
         child = self.start(name, "--threads", "1")
-        deadline = time.monotonic() + 600
-        while not list(self.folder.glob(f"{name}/{pattern}")):
-            self.assertLess(time.monotonic(), deadline)
-            self.assertIsNone(child.poll())
-            time.sleep(0.002)
+        wait_until(lambda: list(self.folder.glob(f"{name}/{pattern}")), child)
         for _ in range(times):
             child.send_signal(number)
             time.sleep(0.05)
@@ -396,10 +392,7 @@ class Continuing(SweepTestCase):
     def test_an_interrupt_during_the_simulations_keeps_those_finished(self):
         long = [*SMALL, "design.train.samples=2000,4000", "seed=1..2"]
         child = self.start("run", sweep=long)
-        deadline = time.monotonic() + 600
-        while not self.get_stored("run"):
-            self.assertLess(time.monotonic(), deadline)
-            time.sleep(0.01)
+        wait_until(lambda: self.get_stored("run"), child)
         child.send_signal(signal.SIGINT)
         child.communicate(timeout=600)
         self.assertEqual(child.returncode, 130)
@@ -410,9 +403,7 @@ class Continuing(SweepTestCase):
     def test_a_second_interrupt_stops_at_once(self):
         slow = [*SMALL, "design.train.samples=600,601", "noise.replicates=4"]  # trains for many seconds
         child = self.start("run", "--threads", "1", sweep=slow)
-        while not list(self.folder.glob("run/cases/*/samples.h5")):
-            self.assertIsNone(child.poll())
-            time.sleep(0.01)
+        wait_until(lambda: list(self.folder.glob("run/cases/*/samples.h5")), child)
         child.send_signal(signal.SIGINT)
         time.sleep(0.1)
         self.assertIsNone(child.poll())
@@ -423,8 +414,7 @@ class Continuing(SweepTestCase):
     def test_status_says_who_is_running(self):
         slow = [*SMALL, "design.train.samples=600,601", "noise.replicates=4"]
         child = self.start("run", "--threads", "1", sweep=slow)
-        while not list(self.folder.glob("run/cases/*/samples.h5")):
-            time.sleep(0.01)
+        wait_until(lambda: list(self.folder.glob("run/cases/*/samples.h5")), child)
         status = call("status", self.folder / "run").stdout
         second = self.run_sweep("run", sweep=slow, code=1)
         child.kill()

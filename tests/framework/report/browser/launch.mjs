@@ -6,15 +6,15 @@ const {chromium} = createRequire(join(process.env.TWINMAP_PLAYWRIGHT, 'index.js'
 const kFlags = ['--disable-gpu', '--no-first-run', '--disable-background-networking', '--disable-component-update'];
 const kTries = 3;
 
-/** Longer than anything takes on the most loaded machine. */
-export const kPatience = 900_000; // ms
+/** Longer than anything takes on the most loaded machine, a start among them: one that hangs is tried again. */
+export const kPatience = 240_000, kStart = 60_000; // ms
 
 /** A browser; a start that fails, as it may where memory is short for a moment, is tried again. */
 export async function launchBrowser(tries = kTries, flags = kFlags) {
   try {
     return await chromium.launch({
       executablePath: process.env.TWINMAP_CHROMIUM ?? '/usr/bin/chromium', args: flags, chromiumSandbox: false,
-      timeout: kPatience, handleSIGINT: true
+      timeout: kStart, handleSIGINT: true
     });
   } catch (error) {
     if (tries <= 1) throw error;
