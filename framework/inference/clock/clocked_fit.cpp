@@ -1,13 +1,12 @@
 #include "framework/inference/clock/clocked_fit.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "framework/estimation/levels.hpp"
-#include "framework/estimation/refined/search.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/clock/clocked_simulator.hpp"
 #include "framework/simulation/team_simulator.hpp"
+#include "kernels/linalg/decompositions.hpp"
 
 namespace twinmap {
 
@@ -35,54 +34,39 @@ VectorXd makeHalfWidths(const RecordedSamples& recorded, const std::vector<Clock
   });
 }
 
-/// The misfit of the recording about a fit, whose clock's faults are unknown too.
-class ClockedMisfit {
- public:
-  ClockedMisfit(const RecordedSamples& recorded, const VectorXd& point, const std::vector<ClockFault>& faults)
-      : simulator_(makeClockedSimulator(recorded, faults, makeHalfWidths(recorded, faults))),
-        trial_(simulator_->makeTrial(takeWithin(recorded, faults), recorded.known)),
-        own_(trial_),
-        fit_{point, faults, {}, {}, 0.0, {}} {}
-
-  SearchEnd search(int max_iterations) {
-    VectorXd at(fit_.point.size() + static_cast<Index>(fit_.faults.size()));
-    at.head(fit_.point.size()) = fit_.point;
-    for (std::size_t k = 0; k < fit_.faults.size(); ++k) {
-      at[fit_.point.size() + static_cast<Index>(k)] = fit_.faults[k].size;
-    }
-    return twinmap::search(own_.misfit, own_.box.normalize(at), max_iterations);
-  }
-
-  /// Where a search ended; not given of one that could not begin.
-  ClockedFit describe(const LocalMisfit& local) const {
-    if (!local.status.ok) {
-      return {};
-    }
-    ClockedFit fit = fit_;
-    const VectorXd all = own_.box.makePoint(local.at);
-    fit.point = all.head(fit.point.size());
-    for (std::size_t k = 0; k < fit.faults.size(); ++k) {
-      fit.faults[k].size = all[fit.point.size() + static_cast<Index>(k)];
-    }
-    fit.residual = local.residual;
-    fit.jacobian = local.jacobian;
-    for (Index k = fit.point.size(); k < fit.jacobian.cols(); ++k) {
-      fit.jacobian.col(k) /= own_.box.getHalfWidths()[k];
-    }
-    fit.misfit = local.misfit;
-    const std::vector<FeatureInfo>& infos = trial_.model->getExtractor().getInfos();
-    for (const Index i : trial_.model->getWhole().features) {
-      fit.infos.push_back(infos[static_cast<std::size_t>(i)]);
-    }
-    return fit;
-  }
-
- private:
-  std::shared_ptr<const SimulatorRefiner> simulator_;
-  MeasuredTrial trial_;
-  TrialMisfit own_;
-  ClockedFit fit_;
+/// A point with its linear model, in half-widths.
+struct Linearized {
+  LocalMisfit local;
+  VectorXd half_widths;
+  std::vector<FeatureInfo> infos;
 };
+
+Linearized linearize(const RecordedSamples& recorded, const VectorXd& point,
+                     const std::vector<ClockFault>& faults) {
+  const auto simulator = makeClockedSimulator(recorded, faults, makeHalfWidths(recorded, faults));
+  const VectorXd features = takeWithin(recorded, faults);
+  const MeasuredTrial trial = simulator->makeTrial(features, recorded.known);
+  TrialMisfit own(trial);
+  VectorXd at(point.size() + static_cast<Index>(faults.size()));
+  at.head(point.size()) = point;
+  for (std::size_t k = 0; k < faults.size(); ++k) {
+    at[point.size() + static_cast<Index>(k)] = faults[k].size;
+  }
+  Linearized made{own.linearize(at), own.box.getHalfWidths(), {}};
+  const std::vector<FeatureInfo>& infos = trial.model->getExtractor().getInfos();
+  for (const Index i : trial.model->getWhole().features) {
+    made.infos.push_back(infos[static_cast<std::size_t>(i)]);
+  }
+  return made;
+}
+
+ClockedFit toFit(const Linearized& at, const VectorXd& point, const std::vector<ClockFault>& faults) {
+  ClockedFit fit{point, faults, at.local.residual, at.local.jacobian, at.local.misfit, at.infos};
+  for (Index k = point.size(); k < fit.jacobian.cols(); ++k) {
+    fit.jacobian.col(k) /= at.half_widths[k];
+  }
+  return fit;
+}
 
 }  // namespace
 
@@ -123,25 +107,50 @@ VectorXd takeWithin(const RecordedSamples& recorded, const std::vector<ClockFaul
 
 ClockedFit linearizeClocked(const RecordedSamples& recorded, const VectorXd& point,
                             const std::vector<ClockFault>& faults) {
-  ClockedMisfit misfit(recorded, point, faults);
-  return misfit.describe(misfit.search(0).local);
+  const Linearized at = linearize(recorded, point, faults);
+  return at.local.status.ok ? toFit(at, point, faults) : ClockedFit{};
 }
 
 ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
                     const std::vector<ClockFault>& faults) {
-  ClockedFit fit{point, faults, {}, {}, std::numeric_limits<double>::infinity(), {}};
-  for (int round = 0; round < kFewIterations; ++round) {
-    ClockedMisfit misfit(recorded, fit.point, fit.faults);
-    const LocalMisfit local = misfit.search(kFewIterations).local;
-    const double before = fit.misfit;
-    fit = misfit.describe(local);
+  ClockedFit fit{point, faults, {}, {}, 0.0, {}};
+  Linearized at = linearize(recorded, point, faults);
+  if (!at.local.status.ok) {
+    return {};
+  }
+  for (int step = 0; step < kFewIterations; ++step) {
+    const Eigen::MatrixXd lower = linalg::calcCholesky(at.local.calcHessian()).lower;
+    const VectorXd way = linalg::solveCholesky(lower, at.local.descent).cwiseProduct(at.half_widths);
+    const double before = at.local.misfit;
+    if (!way.allFinite()) {
+      return {};  // of a misfit beyond numbers
+    }
+    double share = 1.0;
+    for (int halving = 0; halving < kFewIterations; ++halving, share *= 0.5) {
+      ClockedFit next = fit;
+      next.point += share * way.head(point.size());
+      const std::vector<ParameterSpec> unknown = collectUnknown(recorded.experiment.model);
+      for (Index i = 0; i < point.size(); ++i) {
+        const Bounds& bounds = unknown[static_cast<std::size_t>(i)].bounds;
+        next.point[i] = std::clamp(next.point[i], bounds.lower, bounds.upper);
+      }
+      for (std::size_t k = 0; k < faults.size(); ++k) {
+        next.faults[k].size += share * way[point.size() + static_cast<Index>(k)];
+      }
+      Linearized there = linearize(recorded, next.point, next.faults);
+      if (there.local.status.ok && there.local.misfit < at.local.misfit) {
+        fit = std::move(next);
+        at = std::move(there);
+        break;
+      }
+    }
     const bool is_gross =
-        recorded.noise.outputs.empty() && isGross(fit.misfit, static_cast<double>(local.residuals));
-    if (!fit.isGiven() || !(before - fit.misfit > (is_gross ? kCreeping * before : kLastGain))) {
+        recorded.noise.outputs.empty() && isGross(at.local.misfit, static_cast<double>(at.local.residuals));
+    if (before - at.local.misfit <= (is_gross ? kCreeping * before : kLastGain)) {
       break;
     }
   }
-  return fit;
+  return toFit(at, fit.point, fit.faults);
 }
 
 }  // namespace twinmap
