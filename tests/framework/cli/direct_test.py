@@ -213,6 +213,21 @@ class Direct(FolderTestCase):
         self.expect_true(found)
         self.assertRegex(self.infer(CART, slipped), r"from t = 2.06 s on the record is [0-9.]+ ms late")
 
+    def test_a_clock_that_is_late_is_named(self):
+        """By more than two samples, so that the last ones come after the simulation's end."""
+        lines = self.measured.read_text().splitlines()
+        rows = [line.split(",") for line in lines[1:]]
+        late = 2.3 * (float(rows[1][0]) - float(rows[0][0]))
+        moved = self.folder / "late.csv"
+        moved.write_text(
+            "\n".join([lines[0]] + [f"{float(t) - late!r},{x}" for t, x in (row[:2] for row in rows)]) + "\n"
+        )
+        found = json.loads(self.infer(CART, moved, "--json"))
+        self.assertEqual(found["statuses"], ["clock_fault"])
+        (clock,) = found["clock"]
+        self.assertLess(abs(clock["late"] + late), 4 * clock["sd"])
+        self.expect_true(found)
+
     def test_a_clock_that_runs_fast_is_named(self):
         fast = self.folder / "fast.csv"
         lines = self.measured.read_text().splitlines()
