@@ -1,9 +1,8 @@
 """What a second run from nothing changes: answers in another store beside those of the first, machine by machine."""
 import numpy as np
-import yaml
 from cases import KINDS
 from judge import read
-from peers import HERE, PEERS
+from peers import PEERS
 
 ANSWER = ["mean", "sd", "intervals95", "intervals50", "warnings", "simulations"]
 HEAD = """
@@ -56,5 +55,4 @@ def describe(store, other):
         most = max([most, *(line["machine"] for line, _ in pairs)])
         rows += make_row(peer, pairs) if pairs else ""
     recordings, files = count_recordings(store, other)
-    remark = yaml.safe_load((HERE / "remarks.yaml").read_text())["again"]
-    return f"{HEAD.format(most=most, recordings=recordings, files=files)}{rows}\n{remark}\n"
+    return HEAD.format(most=most, recordings=recordings, files=files) + rows

@@ -3,7 +3,7 @@ from pendulum_mujoco import XML, set_pendulum  # noqa: F401
 
 
 def modify(spec, p):
-    set_pendulum(spec, 1, -p["c1"] / 9.81, -p["c3"])
+    set_pendulum(spec, 1, max(-p["c1"] / 9.81, 1e-9), -p["c3"])  # a body of no mass is refused
     spec.actuator("T").gear[0] = p["c2"]
 
 

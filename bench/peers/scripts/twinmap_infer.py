@@ -11,6 +11,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from harness import Answer, answer_each
 
 TWINMAP = os.environ["TWINMAP"]
+#: Seconds, five times what an arm takes.
+LONGEST = 1200
 
 
 def read(line, names):
@@ -31,7 +33,7 @@ def call(case, machine, source, *options):
     files = case.files(machine)
     named = [part for trial, file in files.items() for part in (["--trial", f"{trial}={file}"] if trial else [file])]
     command = [TWINMAP, "infer", source, *named, "--json", *options]
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=LONGEST)
     lines = [line for line in done.stdout.splitlines() if line.startswith("{")]
     if not lines:
         raise RuntimeError(done.stderr.strip())
