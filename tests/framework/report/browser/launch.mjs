@@ -7,7 +7,7 @@ const kFlags = ['--disable-gpu', '--no-first-run', '--disable-background-network
 const kTries = 3;
 
 /** Longer than anything takes on the most loaded machine, a start among them: one that hangs is tried again. */
-export const kPatience = 240_000, kStart = 60_000; // ms
+export const kPatience = 240_000, kStart = 120_000; // ms
 
 /** A browser; a start that fails, as it may where memory is short for a moment, is tried again. */
 export async function launchBrowser(tries = kTries, flags = kFlags) {
