@@ -198,13 +198,16 @@ class Direct(FolderTestCase):
         self.assertEqual(len(found["outliers"]), 2)
         self.expect_true(found)
 
+    def restamp(self, name, change):
+        """The measurement by another clock."""
+        header, *rows = (line.split(",") for line in self.measured.read_text().splitlines())
+        lines = [header] + [[repr(change(float(row[0]))), *row[1:]] for row in rows]
+        path = self.folder / name
+        path.write_text("\n".join(map(",".join, lines)) + "\n")
+        return path
+
     def test_a_clock_that_slips_is_named_and_does_not_count(self):
-        lines = self.measured.read_text().splitlines()
-        rows = [line.split(",") for line in lines[1:]]
-        for row in rows:
-            row[0] = repr(float(row[0]) + (0.01 if float(row[0]) > 2.0 else 0.0))
-        slipped = self.folder / "slipped.csv"
-        slipped.write_text("\n".join([lines[0]] + [",".join(row) for row in rows]) + "\n")
+        slipped = self.restamp("slipped.csv", lambda t: t + (0.01 if t > 2.0 else 0.0))
         found = json.loads(self.infer(CART, slipped, "--json"))
         self.assertEqual(found["statuses"], ["clock_fault"])
         (slip,) = found["clock"]
@@ -215,13 +218,9 @@ class Direct(FolderTestCase):
 
     def test_a_clock_that_is_late_is_named(self):
         """By more than two samples, so that the last ones come after the simulation's end."""
-        lines = self.measured.read_text().splitlines()
-        rows = [line.split(",") for line in lines[1:]]
-        late = 2.3 * (float(rows[1][0]) - float(rows[0][0]))
-        moved = self.folder / "late.csv"
-        moved.write_text(
-            "\n".join([lines[0]] + [f"{float(t) - late!r},{x}" for t, x in (row[:2] for row in rows)]) + "\n"
-        )
+        first, second = (float(row.split(",")[0]) for row in self.measured.read_text().splitlines()[1:3])
+        late = 2.3 * (second - first)
+        moved = self.restamp("late.csv", lambda t: t - late)
         found = json.loads(self.infer(CART, moved, "--json"))
         self.assertEqual(found["statuses"], ["clock_fault"])
         (clock,) = found["clock"]
@@ -229,12 +228,7 @@ class Direct(FolderTestCase):
         self.expect_true(found)
 
     def test_a_clock_that_runs_fast_is_named(self):
-        fast = self.folder / "fast.csv"
-        lines = self.measured.read_text().splitlines()
-        rows = [line.split(",") for line in lines[1:]]
-        fast.write_text(
-            "\n".join([lines[0]] + [f"{1.004 * float(t)!r},{x}" for t, x in (row[:2] for row in rows)]) + "\n"
-        )
+        fast = self.restamp("fast.csv", lambda t: 1.004 * t)
         found = json.loads(self.infer(CART, fast, "--json"))
         self.assertEqual(found["statuses"], ["clock_fault"])
         (rate,) = found["clock"]
