@@ -114,7 +114,7 @@ LaneProfile makeProfile(const lanes::Statistics& statistics, int lanes, double s
 LaneProfile measureLanes(const ModelSpec& model, const Eigen::VectorXd& times,
                          const Eigen::MatrixXd& points) {
   const Eigen::VectorXd box_center = makeSimbodyModel(model)->solveBoxCenter();
-  const LaneModel lane_model = compileModel(recordModel(model, SystemNames(model.system)), false);
+  const LaneModel lane_model = compileModel(recordModel(model, SystemNames(model.system)));
   LaneStart start(model, lane_model, box_center, times);
   const int count = static_cast<int>(points.cols());
   Eigen::MatrixXd outputs(static_cast<Eigen::Index>(model.outputs.size()) * times.size(), count);

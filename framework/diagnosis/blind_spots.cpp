@@ -24,12 +24,23 @@ std::vector<BlindSpot> calcBlindSpots(const ScoredCandidates& scored, Index p, d
   return spots;
 }
 
+VectorXd keepWithinBounds(const VectorXd& shifts, const ScoredCandidates& scored,
+                          const std::vector<ParameterSpec>& parameters) {
+  const VectorXd most = calcWidths(parameters).cwiseQuotient(scored.stddevs.head(shifts.size()));
+  return (shifts.array().abs() > most.array()).select(0.0, shifts);
+}
+
 std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                       double level) {
   requireKnownNoise(experiment, "what would go unnoticed");
   const VectorXd center = calcBoxCenter(collectUnknown(experiment.model));
-  return calcBlindSpots(scoreCandidates(experiment, recordings, center),
-                        static_cast<Index>(experiment.model.parameters.size()), level);
+  const std::vector<ParameterSpec>& parameters = experiment.model.parameters;
+  const ScoredCandidates scored = scoreCandidates(experiment, recordings, center);
+  std::vector<BlindSpot> spots = calcBlindSpots(scored, static_cast<Index>(parameters.size()), level);
+  for (BlindSpot& spot : spots) {
+    spot.shifts = keepWithinBounds(spot.shifts, scored, parameters);
+  }
+  return spots;
 }
 
 }  // namespace twinmap

@@ -19,8 +19,13 @@ struct BlindSpot {
 /// Of candidates that were scored, where a model has p parameters of the machine.
 std::vector<BlindSpot> calcBlindSpots(const ScoredCandidates& scored, Eigen::Index p, double level);
 
-/// Of all candidates at the centre of the box; by the linear model. Throws ExperimentError where the size of
-/// the noise is unknown.
+/// Shifts (p, in sds of scored) without those by more than bounds allow, 0 instead: such a parameter is not
+/// determined beside others, whatever is missing.
+Eigen::VectorXd keepWithinBounds(const Eigen::VectorXd& shifts, const ScoredCandidates& scored,
+                                 const std::vector<ParameterSpec>& parameters);
+
+/// Of all candidates at the centre of the box; by the linear model, within the bounds. Throws ExperimentError
+/// where the size of the noise is unknown.
 std::vector<BlindSpot> calcBlindSpots(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                                       double level);
 

@@ -61,12 +61,10 @@ const RankedTerm* findMoving(const RankedTerm& best, const std::vector<RankedTer
   return moving;
 }
 
-/// The blind spot that moves a parameter most, up to the size that matters. What would move by more than its
-/// bounds allow is not determined beside others, whatever is missing.
+/// The blind spot that moves a parameter most, up to the size that matters.
 std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored,
                                            const std::vector<ParameterSpec>& parameters) {
   const auto p = static_cast<Index>(parameters.size());
-  const VectorXd most = calcWidths(parameters).cwiseQuotient(scored.stddevs.head(p));
   std::optional<UnnoticedTerm> worst;
   for (const BlindSpot& spot : calcBlindSpots(scored, p, kMismatchLevel)) {
     if (!std::isfinite(spot.noticed) || spot.candidate.has_states) {
@@ -74,8 +72,8 @@ std::optional<UnnoticedTerm> findUnnoticed(const ScoredCandidates& scored,
     }
     const TermCandidate& candidate = spot.candidate;
     const double size = std::min(spot.noticed, candidate.size);
-    VectorXd shifts = spot.shifts.cwiseAbs() * (size / spot.noticed);
-    shifts = (shifts.array() > most.array()).select(0.0, shifts);
+    const VectorXd shifts =
+        keepWithinBounds(spot.shifts.cwiseAbs() * (size / spot.noticed), scored, parameters);
     Index moved = 0;
     if (const double shift = shifts.maxCoeff(&moved); !worst || shift > worst->shift) {
       worst = {candidate.term, candidate.meaning, candidate.unit, size, static_cast<std::size_t>(moved),

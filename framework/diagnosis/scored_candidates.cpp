@@ -12,6 +12,7 @@
 #include "framework/diagnosis/candidates/term_candidates.hpp"
 #include "framework/estimation/bounded_information.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/experiment/trials/combine_trials.hpp"
 
 namespace twinmap {
 
@@ -56,16 +57,33 @@ std::vector<ModelSizes> calcTrialSizes(const ExperimentSpec& experiment, const R
   return sizes;
 }
 
+void hold(std::vector<ParameterSpec>& parameters) {
+  for (ParameterSpec& parameter : parameters) {
+    parameter.has_derivatives = false;
+  }
+}
+
+ExperimentSpec holdUnknown(ExperimentSpec experiment) {
+  hold(experiment.model.parameters);
+  changeTrials(experiment, [](ExperimentSpec& trial) {
+    hold(trial.model.parameters);
+    hold(trial.model.nuisance);
+  });
+  return experiment;
+}
+
 /// The derivatives of all residuals along some of the candidates, as columns behind those of `all`; the first
-/// ones bring the residual and the derivatives of the parameters.
+/// ones bring the residual and the derivatives of the parameters, which no others repeat: where there are
+/// many parameters these take most of the time.
 void appendDerivatives(const ExperimentSpec& experiment, const RecordedFeatures& recordings,
                        const VectorXd& point, const std::vector<TermCandidate>& candidates,
                        std::vector<ParameterSpec>& unknown, LinearizedRecordings& all, MatrixXd& terms) {
-  const AugmentedExperiment augmented = addAll(experiment, candidates, kAccurateShare);
+  const Index before = terms.cols();
+  const AugmentedExperiment augmented =
+      addAll(before > 0 ? holdUnknown(experiment) : experiment, candidates, kAccurateShare);
   const auto p = static_cast<Index>(experiment.model.parameters.size());
   const RecordingsProblem problem(augmented.experiment, recordings);
   LinearizedRecordings linear = problem.linearize(insertAdded(point, p, VectorXd::Zero(augmented.added)));
-  const Index before = terms.cols();
   terms.conservativeResize(linear.residual.size(), before + augmented.added);
   terms.rightCols(augmented.added) = linear.jacobian.middleCols(p, augmented.added);
   if (before > 0) {

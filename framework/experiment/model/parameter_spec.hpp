@@ -29,6 +29,8 @@ struct ParameterSpec {
   RelativeTo relative_to = RelativeTo::kAutomatic;  ///< of an updating parameter
   std::optional<Name> variable;                     ///< of a model from elsewhere; default: the name
   std::optional<PriorSpec> prior{};                 ///< default: uniform within the bounds
+  /// Whether derivatives by it are asked for; where not, they may be given as 0. Not in the file.
+  bool has_derivatives = true;
 };
 
 /// Whether the bounds contain 0, where an error relative to the value is undefined.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "framework/diagnosis/scored_candidates.hpp"
 #include "tests/framework/diagnosis/measured_cart.hpp"
 
 namespace twinmap {

@@ -1,7 +1,5 @@
 #include "framework/models/mechanism/lanes/lane_model.hpp"
 
-#include <numeric>
-
 #include "kernels/lanes/program/differentiate.hpp"
 
 namespace twinmap {
@@ -21,10 +19,10 @@ void appendJacobian(const Symbols& values, const Symbols& variables, Symbols& sy
   }
 }
 
-Symbols getParameters(const RecordedModel& recorded, bool with_derivatives) {
+Symbols getParameters(const RecordedModel& recorded, const std::vector<int>& directions) {
   Symbols parameters;
-  for (int i = 0; with_derivatives && i < recorded.parameter_count; ++i) {
-    parameters.push_back(recorded.recorder->parameter(i));
+  for (const int direction : directions) {
+    parameters.push_back(recorded.recorder->parameter(direction));
   }
   return parameters;
 }
@@ -58,9 +56,9 @@ Symbols collectRest(const RecordedModel& recorded, const Symbols& parameters) {
   return outputs;
 }
 
-RestPrograms compileRest(const RecordedModel& recorded, bool with_derivatives,
+RestPrograms compileRest(const RecordedModel& recorded, const std::vector<int>& directions,
                          const program::InputCounts& counts) {
-  const Symbols parameters = getParameters(recorded, with_derivatives);
+  const Symbols parameters = getParameters(recorded, directions);
   program::Recorder& recorder = *recorded.recorder;
   RestPrograms programs;
   programs.residuals = program::compile(recorder, collectRest(recorded, parameters), counts);
@@ -100,9 +98,9 @@ lanes::Equations makeEquations(const RecordedModel& recorded, const LaneModel& m
 
 }  // namespace
 
-LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
+LaneModel compileModel(const RecordedModel& recorded, const std::vector<int>& directions) {
   program::Recorder& recorder = *recorded.recorder;
-  const Symbols parameters = getParameters(recorded, with_derivatives);
+  const Symbols parameters = getParameters(recorded, directions);
   LaneModel model;
   model.coordinate_count = recorded.coordinate_count;
   model.origin_parameter = recorded.origin_parameter;
@@ -110,9 +108,7 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   model.counts = {countStates(recorded), recorded.parameter_count, recorded.sampling.input_count};
   model.excitation = recorded.excitation;
   model.sampling = recorded.sampling;
-  model.directions = static_cast<int>(parameters.size());
-  std::vector<int> directions(parameters.size());
-  std::iota(directions.begin(), directions.end(), 0);
+  model.directions = directions;
   model.loops = recorded.loops;
   model.prescribed = recorded.prescribed;
   model.is_memoryless = isMemoryless(recorded);
@@ -120,12 +116,12 @@ LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives) {
   model.start = program::compile(recorder, collectStart(recorded, parameters), model.counts);
   if (recorded.record_with_rest) {
     model.at_rest = std::make_shared<DeferredRest>(
-        [record = recorded.record_with_rest, with_derivatives, counts = model.counts] {
-          return compileRest(record(), with_derivatives, counts);
+        [record = recorded.record_with_rest, directions, counts = model.counts] {
+          return compileRest(record(), directions, counts);
         });
   } else {
     model.at_rest = std::make_shared<DeferredRest>(
-        [programs = compileRest(recorded, with_derivatives, model.counts)] { return programs; });
+        [programs = compileRest(recorded, directions, model.counts)] { return programs; });
   }
   return model;
 }

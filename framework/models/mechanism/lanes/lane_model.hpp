@@ -56,10 +56,11 @@ struct LaneModel {
   program::Program start;  ///< initial states (of the first phase's inputs), events, delays; with directions
                            ///< their derivatives, one by one
   std::shared_ptr<DeferredRest> at_rest;
-  int directions = 0;                      ///< 0, or all parameters
+  std::vector<int> directions;             ///< parameters by which there are derivatives
   std::vector<int> prescribed;             ///< coordinates that move as signals say
   std::shared_ptr<const LoopModel> loops;  ///< null: none
 
+  int countDirections() const { return static_cast<int>(directions.size()); }
   int getFirstOrderCount() const { return counts.states - 2 * coordinate_count - hidden_count; }
   bool isDifferentiated() const { return coordinate_count <= kMostDifferentiated; }
   bool hasEvents() const { return problem.guard_count > 0; }
@@ -80,10 +81,9 @@ struct StiffPrograms {
   program::Program jacobian;  ///< d derivative / d states, column by column
 };
 
-/// Compiles a recorded model, for its values alone or also for the derivatives with respect to all
-/// parameters. Appends to the recorder. Cost: milliseconds; with derivatives as much more as there are
-/// parameters.
-LaneModel compileModel(const RecordedModel& recorded, bool with_derivatives);
+/// Compiles a recorded model. directions: parameters by which there are derivatives; none: for its values
+/// alone. Appends to the recorder. Cost: milliseconds; with derivatives as much more as there are directions.
+LaneModel compileModel(const RecordedModel& recorded, const std::vector<int>& directions = {});
 
 /// Appends to the recorder.
 StiffPrograms compileStiff(const RecordedModel& recorded);

@@ -1,5 +1,6 @@
 #include "framework/models/mechanism/lanes/lane_programs.hpp"
 
+#include "framework/experiment/model/parameter_box.hpp"
 #include "framework/models/mechanism/lanes/compare_with_simbody.hpp"
 #include "framework/models/mechanism/lanes/motion_checks.hpp"
 #include "framework/models/mechanism/loops/make_loop_model.hpp"
@@ -16,6 +17,18 @@ std::string findObstacle(const ModelContext& context) {
   return context.names.getCoordinateNames().empty() ? "nothing can move" : "";
 }
 
+/// Those by which derivatives are asked for.
+std::vector<int> listDirections(const ModelSpec& model) {
+  const std::vector<ParameterSpec> sampled = collectSampled(model);
+  std::vector<int> directions;
+  for (std::size_t i = 0; i < sampled.size(); ++i) {
+    if (sampled[i].has_derivatives) {
+      directions.push_back(static_cast<int>(i));
+    }
+  }
+  return directions;
+}
+
 }  // namespace
 
 LanePrograms::LanePrograms(ModelContext& context, SimbodyModel* simbody)
@@ -28,7 +41,7 @@ LanePrograms::LanePrograms(ModelContext& context, SimbodyModel* simbody)
 const LaneModel& LanePrograms::getDerivatives(const SystemNames& names) {
   const std::lock_guard<std::mutex> guard(compiling_);
   if (!derivatives_) {
-    derivatives_ = compileModel(recordModel(model_, names, values_->loops), true);
+    derivatives_ = compileModel(recordModel(model_, names, values_->loops), listDirections(model_));
   }
   return *derivatives_;
 }
@@ -44,7 +57,7 @@ const StiffPrograms& LanePrograms::getStiff(const SystemNames& names) {
 /// Returns what prevents it, or "".
 std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) {
   requireSteadyMotions(context);
-  values_ = compileModel(recordModel(model_, context.names, makeLoopModel(context)), false);
+  values_ = compileModel(recordModel(model_, context.names, makeLoopModel(context)));
   if (simbody == nullptr) {
     return "";
   }
@@ -52,8 +65,8 @@ std::string LanePrograms::compile(ModelContext& context, SimbodyModel* simbody) 
     return compareWithSimbody(context, *simbody, *values_);
   }
   const ModelSpec known = removeSampled(model_);  // what Simbody knows
-  return compareWithSimbody(
-      context, *simbody, compileModel(recordModel(known, SystemNames(known.system), values_->loops), false));
+  return compareWithSimbody(context, *simbody,
+                            compileModel(recordModel(known, SystemNames(known.system), values_->loops)));
 }
 
 }  // namespace twinmap

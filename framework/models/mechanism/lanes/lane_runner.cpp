@@ -51,7 +51,7 @@ lanes::Options makeOptions(const ModelSpec& spec, const LaneModel& model) {
   options.absolute_tolerance = spec.simulation.absolute_tolerance;
   options.max_steps = getMaxSteps(spec, model);
   options.max_wall_time = spec.simulation.max_wall_time;
-  const VectorXd widths = calcWidths(collectSampled(spec));
+  const VectorXd widths = calcWidths(collectSampled(spec))(model.directions);
   options.parameter_scales.assign(widths.begin(), widths.end());
   return options;
 }
@@ -101,8 +101,8 @@ class LaneRunner::Impl : public lanes::SampleStream {
     next_ = 0;
     step_limits_.clear();
     if (derivatives != nullptr) {
-      derivatives->resize(responses.rows(), parameters.cols() * model_.directions);
-      output_derivatives_.resize(getRecordedRows() * model_.directions, parameters.cols());
+      derivatives->setZero(responses.rows(), parameters.size());
+      output_derivatives_.resize(getRecordedRows() * model_.countDirections(), parameters.cols());
     }
     derivatives_ = derivatives;
     if (getRecordedRows() > getOutputRows()) {
@@ -186,11 +186,14 @@ class LaneRunner::Impl : public lanes::SampleStream {
     responses_->col(column).tail(rows) = calcModes(point);
     constexpr double kStep = 1e-5;  // of the bounds' width: rounding and truncation are then both about 1e-10
     const VectorXd widths = calcWidths(collectSampled(spec_));
-    for (int k = 0; derivatives_ != nullptr && k < model_.directions; ++k) {
+    if (derivatives_ == nullptr) {
+      return;
+    }
+    for (const int k : model_.directions) {
       VectorXd above = point, below = point;
       above[k] += kStep * widths[k];
       below[k] -= kStep * widths[k];
-      derivatives_->col(column * model_.directions + k).tail(rows) =
+      derivatives_->col(column * point.size() + k).tail(rows) =
           (calcModes(above) - calcModes(below)) / (above[k] - below[k]);
     }
   }
@@ -214,11 +217,12 @@ class LaneRunner::Impl : public lanes::SampleStream {
   }
 
   void takeDerivatives(Index column, SampleStatus& status) {
-    const Index p = model_.directions, rows = getOutputRows();
-    const MatrixXd recorded = output_derivatives_.col(column).reshaped(getRecordedRows(), p);
+    const Index p = parameters_->rows(), rows = getOutputRows(), asked = model_.countDirections();
+    const MatrixXd recorded = output_derivatives_.col(column).reshaped(getRecordedRows(), asked);
+    MatrixXd shown = recorded.topRows(rows);
+    subtractBefore(model_.sampling.subtracted, task_.layout.times.size(), recorded, shown);
     auto derivatives = derivatives_->middleCols(column * p, p);
-    derivatives.topRows(rows) = recorded.topRows(rows);
-    subtractBefore(model_.sampling.subtracted, task_.layout.times.size(), recorded, derivatives);
+    derivatives.topRows(rows)(Eigen::all, model_.directions) = shown;
     for (Index row = 0; row < rows; ++row) {
       const Bounds* range = findRange(spec_, task_.layout, row);
       if (range != nullptr && isClipped(*range, (*responses_)(row, column))) {

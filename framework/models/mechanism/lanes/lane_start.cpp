@@ -19,15 +19,15 @@ LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const Vector
       start_(model.start),
       rest_(model) {
   if (model.loops) {
-    assembly_.emplace(*model.loops);
+    assembly_.emplace(*model.loops, model.directions);
   }
 }
 
 void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
   // the values, then their derivatives with respect to each parameter
-  const MatrixXd all =
-      calcStart(parameters)
-          .reshaped(model_.start.outputs.size() / (1 + model_.directions), 1 + model_.directions);
+  const MatrixXd all = calcStart(parameters)
+                           .reshaped(model_.start.outputs.size() / (1 + model_.directions.size()),
+                                     1 + model_.countDirections());
   sample.parameters.assign(parameters.begin(), parameters.end());
   fillInitial(parameters, all.topRows(model_.counts.states), sample);
   const Index delays = static_cast<Index>(model_.sampling.delays.size());
@@ -76,9 +76,9 @@ void LaneStart::fillInitial(const Parameters& parameters, MatrixXd states, lanes
     assemble(parameters, states);
     const MatrixXd start = takeEquilibrium(states);
     const VectorXd equilibrium = twinmap::solveEquilibrium(rest_, start.col(0));
-    if (model_.directions > 0) {
-      const MatrixXd slopes = rest_.calcSlopes(equilibrium, start.rightCols(model_.directions));
-      for (int k = 0; k < model_.directions; ++k) {
+    if (!model_.directions.empty()) {
+      const MatrixXd slopes = rest_.calcSlopes(equilibrium, start.rightCols(model_.countDirections()));
+      for (int k = 0; k < model_.countDirections(); ++k) {
         states.col(1 + k) = complete(slopes.col(k));
       }
     }

@@ -91,7 +91,7 @@ class PhaseMaker {
 
   /// Where instants join events, those that nothing moves have no slopes.
   const std::vector<double>* findSlopes(const Eigen::MatrixXd& of, Index row, double sign) {
-    const VectorXd slopes = sign * of.row(row).tail(model_.directions);
+    const VectorXd slopes = sign * of.row(row).tail(model_.countDirections());
     if (slopes.size() == 0 || (!clocks_.empty() && !(slopes.array() != 0.0).any())) {
       return nullptr;
     }

@@ -12,7 +12,7 @@ RestProgram::RestProgram(const LaneModel& model)
     : coordinates_(model.coordinate_count),
       count_(model.coordinate_count + model.getFirstOrderCount()),
       residuals_(count_ + model.getClosureCount()),
-      directions_(model.directions),
+      directions_(model.countDirections()),
       prescribed_(model.prescribed),
       singular_(getSingularReason(model)),
       at_rest_(model.at_rest) {}

@@ -41,11 +41,12 @@ void Assembly::moveDerivatives(const ClosureValues& at, MatrixXd& states) const 
   const Index n = model_.coordinates, p = states.cols() - 1;
   const LoopPlan& plan = model_.plan;
   MatrixXd coordinates = states.topRightCorner(n, p), rates = states.block(n, 1, n, p);
-  const MatrixXd open = at.forced + at.slopes * coordinates;
+  const MatrixXd open = at.forced(Eigen::all, directions_) + at.slopes * coordinates;
   const MatrixXd of_coordinates = at.slopes(plan.rows, plan.dependent);
   coordinates(plan.dependent, Eigen::all) -=
       linalg::fitLinear(of_coordinates, open(plan.rows, Eigen::all)).coefficients;
-  const MatrixXd moving = at.forced_rates + at.rate_slopes * coordinates + at.rate_columns * rates;
+  const MatrixXd moving =
+      at.forced_rates(Eigen::all, directions_) + at.rate_slopes * coordinates + at.rate_columns * rates;
   const MatrixXd of_rates = at.rate_columns(plan.rows, plan.dependent_rates);
   rates(plan.dependent_rates, Eigen::all) -=
       linalg::fitLinear(of_rates, moving(plan.rows, Eigen::all)).coefficients;

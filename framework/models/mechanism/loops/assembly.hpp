@@ -1,5 +1,8 @@
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "framework/models/mechanism/loops/closure_program.hpp"
 
 namespace twinmap {
@@ -8,11 +11,12 @@ namespace twinmap {
 /// one for each thread.
 class Assembly {
  public:
-  /// `model` must outlive the object.
-  explicit Assembly(const LoopModel& model) : model_(model), program_(model) {}
+  /// `model` must outlive the object. directions: the parameters by which states have derivatives.
+  explicit Assembly(const LoopModel& model, std::vector<int> directions = {})
+      : model_(model), program_(model), directions_(std::move(directions)) {}
 
   /// `states`: [coordinates; their rates; states of first order] as the file gives them, then either nothing
-  /// or their derivatives with respect to each parameter, one column each. They become [coordinates; speeds;
+  /// or their derivatives with respect to each direction, one column each. They become [coordinates; speeds;
   /// states] that meet the constraints, where the plan's dependent coordinates and rates are moved, and their
   /// derivatives, by implicit differentiation. Throws SimulationFailure, with what stays open and by how
   /// much.
@@ -37,6 +41,7 @@ class Assembly {
 
   const LoopModel& model_;
   ClosureProgram program_;
+  std::vector<int> directions_;
 };
 
 /// The parameters that the context's numbers were updated to.

@@ -258,6 +258,7 @@ void expectExactLoopDerivatives(ModelSpec model, const VectorXd& point) {
     EXPECT_GT(largest, 0.0) << k;
     EXPECT_LT((derivatives.col(k) - difference).cwiseAbs().maxCoeff(), 1e-5 * largest) << k;
   }
+  expectFirstHeld(model, kLoopTimes, 0, point, derivatives);
 }
 
 TEST(Loops, HaveExactDerivativesThroughAssemblyAndProjection) {

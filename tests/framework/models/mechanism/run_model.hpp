@@ -51,6 +51,24 @@ void expectOutputs(const ModelSpec& model, const double (&times)[8], const doubl
   }
 }
 
+/// Where derivatives by the first parameter are not asked for, those by the others stay and that one is 0.
+inline void expectFirstHeld(ModelSpec model, const Eigen::VectorXd& times, int modes,
+                            const Eigen::VectorXd& point, const Eigen::MatrixXd& derivatives) {
+  ASSERT_FALSE(model.parameters.empty());
+  model.parameters.front().has_derivatives = false;
+  MultibodySimulator simulator(model, times, modes);
+  Eigen::MatrixXd response(derivatives.rows(), 1), held;
+  SampleStatus status;
+  simulator.simulateWithDerivatives(point, response, held, &status);
+  ASSERT_TRUE(status.ok) << status.reason;
+  EXPECT_EQ(held.col(0).cwiseAbs().maxCoeff(), 0.0);
+  for (Eigen::Index k = 1; k < point.size(); ++k) {
+    const Eigen::VectorXd difference = held.col(k) - derivatives.col(k);
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-6 * (1e-3 + derivatives.col(k).cwiseAbs().maxCoeff()))
+        << k;
+  }
+}
+
 inline SampleStatus getStatus(const ModelSpec& model, const Eigen::VectorXd& parameters = Eigen::VectorXd()) {
   const Eigen::VectorXd times = Eigen::VectorXd::Constant(1, model.simulation.duration);
   MultibodySimulator simulator(model, times);
