@@ -20,7 +20,9 @@ namespace {
   std::cerr << fmt::format("twinmap: interrupted after {}: {}\n", describeDuration(seconds),
                            describeState(state));
   if (!best.empty()) {
-    std::cerr << "  best so far, of a search that has not ended: " << best << "\n";
+    std::cerr << (state.best->stddevs.empty() ? "  best so far, of a search that has not ended: "
+                                              : "  best fit, with the standard deviations drawn about it: ")
+              << best << "\n";
   }
   std::cerr.flush();
   std::cout.flush();

@@ -76,6 +76,9 @@ std::string describeBest(const SearchState& state) {
   std::vector<std::string> phrases;
   for (std::size_t i = 0; i < state.best->names.size(); ++i) {
     phrases.push_back(fmt::format("{} = {:.4g}", state.best->names[i], state.best->values[i]));
+    if (i < state.best->stddevs.size()) {
+      phrases.back() += fmt::format(" (sd {:.2g})", state.best->stddevs[i]);
+    }
   }
   return fmt::format("{}", fmt::join(phrases, ", "));
 }
@@ -143,7 +146,16 @@ void noteBest(double chi_square, double degrees, std::vector<double> values) {
   const std::lock_guard lock(board.mutex);
   const std::optional<BestFit>& best = board.state.best;
   if (board.takesBest() && values.size() == board.names.size() && (!best || chi_square < best->chi_square)) {
-    board.state.best = {chi_square, degrees, board.names, std::move(values)};
+    std::vector<double> stddevs = best ? best->stddevs : std::vector<double>();
+    board.state.best = {chi_square, degrees, board.names, std::move(values), std::move(stddevs)};
+  }
+}
+
+void noteStddevs(std::vector<double> stddevs) {
+  Board& board = getBoard();
+  const std::lock_guard lock(board.mutex);
+  if (board.takesBest() && board.state.best) {
+    board.state.best->stddevs = std::move(stddevs);
   }
 }
 

@@ -11,6 +11,7 @@ struct BestFit {
   double chi_square = 0.0, degrees = 0.0;
   std::vector<std::string> names;  ///< of the unknown parameters
   std::vector<double> values;      ///< in their units
+  std::vector<double> stddevs{};   ///< of the first of them; empty before a posterior was drawn from
 };
 
 /// What a command that takes minutes is at, for its line of progress and for an interrupt.
@@ -33,7 +34,9 @@ std::string describeState(const SearchState& state);
 /// "0:42", "1:02:03".
 std::string describeDuration(double seconds);
 
-/// "k = 14.2, m = 3.01": of the best fit; "" of none.
+/// "k = 14.2, m = 3.01", or with standard deviations "k = 14.2 (sd 0.3), m = 3.01 (sd 0.02)": of the best
+/// fit;
+/// "" of none.
 std::string describeBest(const SearchState& state);
 
 /// Names what the calling thread is at, in SearchState, as long as it lives. Stages of other threads than
@@ -64,6 +67,9 @@ class SearchStage {
 void beginBest(std::vector<std::string> names);
 /// Kept where it is the best since beginBest().
 void noteBest(double chi_square, double degrees, std::vector<double> values);
+
+/// Of the posterior about the best fit, its first parameters.
+void noteStddevs(std::vector<double> stddevs);
 
 /// From any thread.
 void noteSimulations(long count);

@@ -164,6 +164,7 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
     setDraws(sampling.drawn, sampling.landscape, LogCoordinates(kept, sampling.plain), posterior);
     posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
+    noteStddevs({posterior.stddev.begin(), posterior.stddev.end()});
     if (options.profiles && problem.drawn == surface.getDimensions() && problem.drawn <= kManyUnknown) {
       const SearchStage profiles("profiles of the likelihood");
       setProfiles(problem, whole, posterior);

@@ -21,6 +21,9 @@ TEST(SearchStage, TellsWhatIsDoneOfWhatAndTheBestFit) {
             "diagnose m.csv from 5 s: fit the best candidates, 2 of 6, chi-square 512.2 of 396 at best, 40 "
             "simulations");
   EXPECT_EQ(describeBest(state), "k = 14.25, m = 3");
+  noteStddevs({0.31});
+  noteBest(512.0, 396.0, {14.5, 3.0});
+  EXPECT_EQ(describeBest(getSearchState()), "k = 14.5 (sd 0.31), m = 3");
 }
 
 TEST(SearchStage, EndsWithItsScope) {
