@@ -32,17 +32,14 @@ std::size_t getSize(const CSource& source, const std::string& name) {
 /// Doubles of the state that belong to the search for the point that explains the scores.
 std::size_t countSearch(const CSource& source) {
   const auto size = [&](const char* name) { return getSize(source, name); };
-  const std::size_t r = size("SCORES"), u = size("UNKNOWN"), w = size("WINDOWS"), n = size("POINTS"),
-                    m = size("VARIABLES"), terms = size("TERMS");
+  const std::size_t r = size("SCORES"), w = size("WINDOWS"), n = size("POINTS"), m = size("VARIABLES"),
+                    terms = size("TERMS");
   if (r == 0) {
     return 0;
   }
   const std::size_t processes =
       w * n * (m + 4) + size("SLOPE_POINTS") + 1 + w * terms + terms * m + size("PADDED_POINTS");
-  const std::size_t metric = 4 * r + 2 * r * u + r * (r + 1) / 2 + 1 + u * u + u + m + w + 1;
-  const std::size_t minima = 4 * (3 * u + 1 + 3 * u * u + r + 1) + 1;
-  return processes + metric + minima + u + size("PARAMETERS") + r + u + u + u * u + u * (u + 3) + u * u +
-         4 * u;
+  return processes + size("SEARCH") + r + 1;
 }
 
 std::string makeParameterTable(const std::vector<ParameterSpec>& parameters) {
@@ -194,9 +191,10 @@ std::size_t calcStateBytes(const CSource& source) {
 std::size_t calcStackBytes(const CSource& source) {
   constexpr std::size_t kRegisters = 6000;  // forty small frames, one in another
   constexpr std::size_t kKernels = 800;     // doubles of the widest loops
+  constexpr std::size_t kSearches = 250;    // doubles of two searches' addresses
   const auto size = [&](const char* name) { return getSize(source, name); };
-  return kDouble * (kKernels + 12 * size("UNKNOWN") + 2 * size("SCORES") + size("UNMODELLED") +
-                    size("TERMS") + size("SIGNALS")) +
+  return kDouble * (kKernels + kSearches + 5 * size("UNKNOWN") + size("UNMODELLED") + size("TERMS") +
+                    size("SIGNALS")) +
          kRegisters;
 }
 

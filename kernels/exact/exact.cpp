@@ -8,6 +8,7 @@
 #define TWINMAP_SCORES 1
 #define TWINMAP_PROCESSES 0
 #define TWINMAP_COMPRESSED 0
+#define TWINMAP_TRUST 1
 
 namespace twinmap::exact {
 namespace c {
@@ -19,7 +20,10 @@ namespace {
 #include "kernels/exact/triangles.c"
 #include "kernels/exact/smooth_process.c"
 #include "kernels/exact/least_squares.c"
+#include "kernels/exact/score_search.c"
+#include "kernels/exact/score_minima.c"
 #include "kernels/exact/box_moments.c"
+#include "kernels/exact/score_mixture.c"
 // clang-format on
 
 }  // namespace
@@ -31,17 +35,8 @@ double dot(int count, const double* a, const double* b) {
 void addMultiple(int count, double factor, const double* x, double* y) {
   c::add_multiple(count, factor, x, y);
 }
-void factorise(int size, double* lower) {
-  c::factorise(size, lower);
-}
-double calcLogDeterminant(int size, const double* lower) {
-  return c::calc_log_determinant(size, lower);
-}
 void solveColumns(int size, const double* lower, double* x) {
   c::solve_columns(size, lower, x);
-}
-double calcSmallLogDeterminant(int size, const double* matrix, double* lower) {
-  return c::calc_small_log_determinant(size, matrix, lower);
 }
 void calcPointCovariance(const smooth_process& process, const double* x, const smooth_point& at) {
   c::calc_point_covariance(&process, x, &at);
@@ -67,26 +62,27 @@ double finishOwnVariance(const smooth_process& process, const own_variance& own,
 double calcLocalFactor(const smooth_process& process, const double* ratios, const smooth_point& at) {
   return c::calc_local_factor(&process, ratios, &at);
 }
-void calcInformation(int r, int u, const double* jacobian, double* information) {
-  c::calc_information(r, u, jacobian, information);
-}
-void calcPull(int u, const double* relative, const double* mean, const double* x, double* offset,
-              double* pull) {
-  c::calc_pull(u, relative, mean, x, offset, pull);
-}
-bool solveStep(int u, const double* information, const double* relative, const double* pull, double damping,
-               double* small, double* step) {
-  return c::solve_step(u, information, relative, pull, damping, small, step) != 0;
-}
-bool isMisfit(double chi_square, int count) {
-  return c::is_misfit(chi_square, count) != 0;
-}
-double calcWidening(int count, const double* stddev, const double* scores, const double* values) {
-  return c::calc_widening(count, stddev, scores, values);
-}
 void calcBoxMoments(int u, const double* precision, const double* shift, double* buffer, double* mean,
                     double* covariance) {
   c::calc_box_moments(u, precision, shift, buffer, mean, covariance);
+}
+score_search layOutSearch(const score_problem& problem, void* owner, double* room) {
+  return c::lay_out_search(&problem, owner, room);
+}
+void searchFromSimulations(score_search& search) {
+  c::search_roughly(&search, c::find_starts(&search, 0));
+}
+void searchFrom(score_search& search, const double* point) {
+  c::search_from(&search, point);
+}
+void refineMinimum(score_search& search, int index, bool may_widen) {
+  c::refine_minimum(&search, index, may_widen ? 1 : 0);
+}
+int findLeast(const score_search& search) {
+  return c::find_least(&search);
+}
+int mixMinima(score_search& search, const double* within, const double* shift) {
+  return c::mix_minima(&search, within, shift);
 }
 
 }  // namespace twinmap::exact

@@ -9,6 +9,8 @@
 namespace twinmap::exact {
 
 using wide_t = double;
+using real_t = double;
+#include "kernels/exact/score_search.h"
 #include "kernels/exact/smooth_process.h"
 
 /// sum of a_i b_i.
@@ -17,15 +19,8 @@ double dot(int count, const double* a, const double* b);
 /// y += factor x.
 void addMultiple(int count, double factor, const double* x, double* y);
 
-/// Factorises C = L L', packed (lower triangle column by column), in place. Cost: size^3 / 3 flops.
-void factorise(int size, double* lower);
-/// 2 log det L of such a factor.
-double calcLogDeterminant(int size, const double* lower);
-/// x = L^-1 x for such a factor. Cost: size^2 flops.
+/// x = L^-1 x for a lower triangle, packed column by column. Cost: size^2 flops.
 void solveColumns(int size, const double* lower, double* x);
-
-/// log det of a small symmetric matrix that is positive definite (u x u). lower: room for as many.
-double calcSmallLogDeterminant(int size, const double* matrix, double* lower);
 
 /// D, s, k and its derivatives for a point x over the length scales (p).
 void calcPointCovariance(const smooth_process& process, const double* x, const smooth_point& at);
@@ -47,24 +42,25 @@ double finishOwnVariance(const smooth_process& process, const own_variance& own,
 /// By how much the errors near a point are beyond their variance; ratios: of each of the n points, left out.
 double calcLocalFactor(const smooth_process& process, const double* ratios, const smooth_point& at);
 
-/// J'J (u x u) for J of r x u.
-void calcInformation(int r, int u, const double* jacobian, double* information);
-/// What a normal prior draws x (u) with, over 3: its information over 3 (relative, u x u) times the offset of
-/// x from its mean; 1 is the relative information of the box.
-void calcPull(int u, const double* relative, const double* mean, const double* x, double* offset,
-              double* pull);
-/// The damped step of least squares, in place of J'residual, under a prior of that information and pull;
-/// false where its information is not positive definite. small: u x u.
-bool solveStep(int u, const double* information, const double* relative, const double* pull, double damping,
-               double* small, double* step);
-/// Whether chi-square is four standard deviations above its mean: one in 10000 by chance.
-bool isMisfit(double chi_square, int count);
-/// By how much the errors of scores (stddev) are to be enlarged to explain their residuals; 0: they do so.
-double calcWidening(int count, const double* stddev, const double* scores, const double* values);
-
 /// Mean and covariance of exp(-x'Q x / 2 + b'x) within the box [-1, 1]^u, by expectation propagation. buffer:
 /// u (u + 3).
 void calcBoxMoments(int u, const double* precision, const double* shift, double* buffer, double* mean,
                     double* covariance);
+
+/// A search with its buffers in a room of count_search() numbers; `problem` must outlive it. The caller fills
+/// in search.scores (r) and the known variables of search.at (m - u).
+score_search layOutSearch(const score_problem& problem, void* owner, double* room);
+/// Minima from the training simulations of most similar scores that are apart from each other.
+void searchFromSimulations(score_search& search);
+/// Minima from `point` (u, moved into the box), and, if that explains too little, from the same simulations.
+void searchFrom(score_search& search, const double* point);
+/// The minimum with the errors' covariance around it, and the normal likelihood there. may_widen: enlarges
+/// errors where they are too small to explain the scores. Cost: r^3 / 3 flops, once or twice, and some steps.
+void refineMinimum(score_search& search, int index, bool may_widen);
+/// Of the minima refined, the one of least objective.
+int findLeast(const score_search& search);
+/// Mean and covariance of the unknowns from the minima refined, and noise_stddev at the one of most evidence,
+/// which is returned. within (u x u), shift (u): what the prior says beside the bounds.
+int mixMinima(score_search& search, const double* within, const double* shift);
 
 }  // namespace twinmap::exact

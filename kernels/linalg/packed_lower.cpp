@@ -187,4 +187,13 @@ void PackedSamples::addTransposedProduct(const double* weights, double* values) 
   }
 }
 
+Eigen::VectorXd packColumns(const Eigen::MatrixXd& lower) {
+  const Index n = lower.rows();
+  Eigen::VectorXd packed(n * (n + 1) / 2);
+  for (Index j = 0, at = 0; j < n; at += n - j, ++j) {
+    packed.segment(at, n - j) = lower.col(j).tail(n - j);
+  }
+  return packed;
+}
+
 }  // namespace twinmap::linalg

@@ -80,4 +80,7 @@ class PackedSamples {
   Eigen::VectorXd values_;
 };
 
+/// The lower triangle (n x n) alone, column by column: n (n + 1) / 2 numbers, as kernels/exact has it.
+Eigen::VectorXd packColumns(const Eigen::MatrixXd& lower);
+
 }  // namespace twinmap::linalg

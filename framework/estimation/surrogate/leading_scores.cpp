@@ -31,7 +31,7 @@ LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown
   const Index kept = std::min<Index>(said.size(), kPerUnknown * unknown);
   std::nth_element(order.begin(), order.begin() + (kept - 1), order.end(), std::greater<>());
   const double least = order[static_cast<std::size_t>(kept - 1)];
-  LeadingScores leading{ArrayXd::Zero(said.size()), {}};
+  LeadingScores leading{VectorXd::Zero(said.size()), {}};
   Index first = 0;
   for (const gp::SharedProcess& process : surrogate.windows) {
     const Index count = process.getFunctionCount();
@@ -39,8 +39,8 @@ LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Index unknown
     while (taken > 0 && said(first + taken - 1) < least) {
       --taken;
     }
-    leading.weights.segment(first, taken) = weights.segment(first, taken);
-    leading.counts.push_back(taken);
+    leading.weights.segment(first, taken) = weights.segment(first, taken).matrix();
+    leading.windows.push_back({static_cast<int>(first), static_cast<int>(count), static_cast<int>(taken)});
     first += count;
   }
   return leading;

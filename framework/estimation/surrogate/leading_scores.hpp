@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "framework/estimation/surrogate/forward_surrogate.hpp"
+#include "kernels/exact/exact.hpp"
 
 namespace twinmap {
 
@@ -18,8 +19,8 @@ std::vector<Eigen::Index> rankSimulations(const ForwardSurrogate& surrogate,
 /// The scores that say most, some five for each unknown: a search with them comes near enough to a minimum,
 /// at a fraction of the cost.
 struct LeadingScores {
-  Eigen::ArrayXd weights;            ///< r, 1 / stddev of noise and mean error; 0 of scores left out
-  std::vector<Eigen::Index> counts;  ///< of each window, the first scores that take part
+  Eigen::VectorXd weights;                   ///< r, 1 / stddev of noise and mean error; 0 of scores left out
+  std::vector<exact::score_window> windows;  ///< all, each with how many of its first scores take part
 };
 LeadingScores findLeadingScores(const ForwardSurrogate& surrogate, Eigen::Index unknown);
 

@@ -41,7 +41,7 @@ struct ScoreMode {
 /// likelihood, linearised there, with what the prior says beside the bounds, is then restricted to the box
 /// (gp::calcBoxMoments). Distinct minima are mixed by their evidence, in Laplace's approximation.
 ///
-/// What decides where the search looks is computed by kernels/exact, so that exported C looks there, too.
+/// The search is that of kernels/exact, which exported C contains, too.
 ///
 /// One object a thread: it holds the buffers.
 class ScoreInversion {
@@ -74,69 +74,30 @@ class ScoreInversion {
                                   const Eigen::Ref<const Eigen::VectorXd>& start);
 
  private:
-  /// What residuals are divided by: standard deviations, or a Cholesky factor of their covariance.
-  struct Metric {
-    Eigen::ArrayXd weights;
-    Eigen::VectorXd lower;  ///< packed, as in kernels/exact
-    double log_determinant = 0.0;
-    bool diagonal = true;
-    std::vector<Eigen::Index> counts;  ///< of each window, the first scores that take part; empty: all do
-
-    Eigen::Index count(std::size_t window, const gp::SharedProcess& process) const {
-      return counts.empty() ? process.getFunctionCount() : counts[window];
-    }
-  };
-  /// A minimum and the normal likelihood around it.
-  struct Minimum {
-    Eigen::VectorXd point;  // u
-    double objective = 0.0;
-    Eigen::VectorXd residual;           // L^-1 r, r
-    Eigen::VectorXd lower;              // L, packed
-    Eigen::MatrixXd jacobian;           // L^-1 ds / dx, r x u
-    Eigen::MatrixXd information;        // u x u
-    Eigen::MatrixXd noise_information;  // the same without the surrogate's errors
-    Eigen::VectorXd shift;              // u
-    bool widened = false;
+  /// Of a minimum refined: what a search keeps of the last one only.
+  struct Refined {
+    Eigen::VectorXd lower;     // L, packed
+    Eigen::MatrixXd jacobian;  // L^-1 ds / dx, r x u
     std::vector<double> widening;
   };
-  /// A search under way.
-  struct Descent {
-    double objective;
-    double damping = 1e-3;
-  };
-  /// Of which scores values_ and jacobian_ are those at point_.
-  enum class Evaluated { kNone, kLeading, kAll };
 
-  std::vector<Eigen::VectorXd> findStarts() const;
-  void evaluate(const Metric& metric, const Eigen::VectorXd& unknown);
-  double calcObjective(const Metric& metric, const Eigen::VectorXd& unknown);
-  void makeNormalEquations(const Metric& metric);
-  bool step(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
-  bool advance(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
-  bool moveOn(const Metric& metric, Eigen::VectorXd& unknown, Descent& descent);
-  void calcPull(const Eigen::VectorXd& unknown);
-  double predictGain(const Eigen::VectorXd& unknown);
-  bool solveStep(const Eigen::VectorXd& unknown, double damping);
-  double improve(const Metric& metric, int steps, Eigen::VectorXd& unknown);
-  void updateMetric(const Eigen::VectorXd& unknown, Metric& metric);
-  std::vector<Minimum> searchRoughly(const std::vector<Eigen::VectorXd>& starts);
-  bool widen(const Metric& metric, const Eigen::VectorXd& unknown);
-  void refine(Minimum& minimum, bool may_widen);
-  void keepExplanation(Minimum& minimum);
-  void keepModes(const std::vector<Minimum>& minima, const std::vector<gp::Moments>& parts,
-                 const Eigen::VectorXd& shares);
-  static bool hasEarlierTwin(const std::vector<Minimum>& minima, std::size_t index);
+  exact::score_problem describeProblem() const;
+  exact::score_search beginSearch(const exact::score_problem& problem,
+                                  const Eigen::Ref<const Eigen::VectorXd>& scores,
+                                  const Eigen::Ref<const Eigen::VectorXd>& known);
+  static void evaluate(const exact::score_search* search, int window, int count);
+  static void calcStddev(const exact::score_search* search, int window);
+  static std::vector<Refined> refine(exact::score_search& search, bool may_widen);
+  void keepExplanation(const exact::score_search& search, int index, Refined& refined);
+  void keepModes(const exact::score_search& search, std::vector<Refined>& refined);
 
   const ForwardSurrogate& surrogate_;
   const BoxPrior prior_;
-  const Eigen::Index unknown_;
-  Metric rough_, leading_;
-  Evaluated evaluated_ = Evaluated::kNone;
+  Eigen::VectorXd rough_weights_, correlation_;
+  LeadingScores leading_;
   std::vector<gp::SharedProcess::Workspace> workspaces_;
-  std::vector<double> widening_;  ///< of each window's standard deviations
-  Eigen::VectorXd scores_, point_, values_, residual_, stddev_, gradient_, noise_stddev_;
-  Eigen::VectorXd step_, offset_, pull_;
-  Eigen::MatrixXd jacobian_, scaled_jacobian_, normal_, small_;
+  std::vector<double> room_;  ///< of searches
+  Eigen::VectorXd noise_stddev_;
   ScoreExplanation explanation_;
   std::vector<ScoreMode> modes_;
   bool explained_ = false;

@@ -86,13 +86,14 @@ class Composer {
     const Surrogate* surrogate = model_.findSurrogate();
     bytes_ = surrogate != nullptr ? &source_.map_bytes : &source_.trust_bytes;
     add("scores.c", [&](CTables& tables) { addScores(model_, tables, source_.sizes); });
-    addPlain("smooth_process.h");
-    addPlain("smooth_process.c");
+    for (const char* file : {"smooth_process.h", "smooth_process.c", "least_squares.c", "score_search.h",
+                             "score_search.c", "score_minima.c"}) {
+      addPlain(file);
+    }
     add("surrogate.c", [&](CTables& tables) { addWindows(model_, tables, source_.sizes); });
-    addPlain("least_squares.c");
-    addPlain("inversion.c");
     if (surrogate != nullptr) {
       addPlain("box_moments.c");
+      addPlain("score_mixture.c");
       add("surrogate_map.c", [&](CTables& tables) { addSurrogateMap(*surrogate, tables, source_.sizes); });
     }
   }

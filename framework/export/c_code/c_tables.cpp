@@ -67,16 +67,6 @@ Eigen::VectorXd flattenRows(const Eigen::MatrixXd& matrix) {
   return flattenColumns(matrix.transpose());
 }
 
-Eigen::VectorXd packLower(const Eigen::MatrixXd& matrix) {
-  Eigen::VectorXd packed(matrix.rows() * (matrix.rows() + 1) / 2);
-  Eigen::Index at = 0;
-  for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-    packed.segment(at, matrix.rows() - j) = matrix.col(j).tail(matrix.rows() - j);
-    at += matrix.rows() - j;
-  }
-  return packed;
-}
-
 void CTables::addArray(const char* type, const std::string& name,
                        const Eigen::Ref<const Eigen::VectorXd>& values, const std::string& meaning,
                        CNumber number) {

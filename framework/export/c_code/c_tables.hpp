@@ -50,7 +50,5 @@ std::string quoteC(const std::string& text);
 /// All numbers of a matrix, column by column, or row by row.
 Eigen::VectorXd flattenColumns(const Eigen::MatrixXd& matrix);
 Eigen::VectorXd flattenRows(const Eigen::MatrixXd& matrix);
-/// The lower triangle, column by column.
-Eigen::VectorXd packLower(const Eigen::MatrixXd& matrix);
 
 }  // namespace twinmap

@@ -113,7 +113,7 @@ std::string addCompressedProcess(const gp::Process& process, Index parameter, do
   tables.addWide(name + "_weights",
                  posterior.inducing_factor.triangularView<Eigen::Lower>().transpose() * posterior.weights,
                  "Weights of their whitened covariances, standardised parameter.");
-  tables.addReal(name + "_correction", packLower(posterior.correction_factor),
+  tables.addReal(name + "_correction", linalg::packColumns(posterior.correction_factor),
                  "Lower factor of what the samples say of the points, column by column.");
   if (coefficients > 0) {
     tables.addWide(name + "_basis", flattenColumns(view.whitened_basis),

@@ -13,8 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-std::string addWindow(const gp::SharedProcess& process, int index, Index first, Index leading,
-                      CTables& tables) {
+std::string addWindow(const gp::SharedProcess& process, std::size_t index, CTables& tables) {
   const gp::SharedProcessParts parts = process.getParts();
   const std::string name = fmt::format("window_{}", index);
   const Index n = parts.scaled_points.rows(), terms = parts.coefficients.rows();
@@ -48,10 +47,8 @@ std::string addWindow(const gp::SharedProcess& process, int index, Index first, 
                                                      linalg::PackedLower::roundUp(n), terms, name)
                                        : "{0, 0, 0, 0, 0}";
   return fmt::format(
-      "{0}, {1}, {2}, {3}, {4}, {5},\n   {6}, {7}_length_scales, {7}_weights, {7}_coefficients, "
-      "{7}_amplitudes, {7}_ratios",
-      first, process.getFunctionCount(), leading, parts.structure.trend == gp::Trend::kQuadratic ? 1 : 0,
-      terms, smooth, own_variance, name);
+      "{0}, {1}, {2},\n   {3}, {4}_length_scales, {4}_weights, {4}_coefficients, {4}_amplitudes, {4}_ratios",
+      parts.structure.trend == gp::Trend::kQuadratic ? 1 : 0, terms, smooth, own_variance, name);
 }
 
 }  // namespace
@@ -85,27 +82,33 @@ void addWindows(const ExportedModel& model, CTables& tables, CSizes& sizes) {
   const ForwardSurrogate& forward = *model.findForward();
   const LeadingScores leading = findLeadingScores(forward, model.countUnknown());
   const Index n = forward.points.cols();
-  std::vector<std::string> entries;
-  Index first = 0, slope_points = 0, terms = 0;
+  std::vector<std::string> windows, entries;
+  for (const exact::score_window& window : leading.windows) {
+    windows.push_back(fmt::format("{}, {}, {}", window.first, window.functions, window.leading));
+  }
+  Index slope_points = 0, terms = 0;
   for (const gp::SharedProcess& process : forward.windows) {
-    const auto index = static_cast<int>(entries.size());
-    entries.push_back(addWindow(process, index, first, leading.counts[entries.size()], tables));
-    first += process.getFunctionCount();
+    entries.push_back(addWindow(process, entries.size(), tables));
     const gp::SharedProcessParts parts = process.getParts();
     slope_points = std::max(slope_points, parts.slope_points);
     terms = std::max(terms, parts.coefficients.rows());
   }
-  tables.addStructs("window", "windows", entries, "Windows of scores.");
+  tables.addStructs("score_window", "score_windows", windows,
+                    "Windows of scores: the first, how many, how many of them the first search looks at.");
+  tables.addStructs("window", "windows", entries, "Their processes.");
   tables.addWide("rough_weights", calcRoughWeights(forward).matrix(),
                  "1 / standard deviation of each score's noise and mean error.");
-  tables.addWide("leading_weights", leading.weights.matrix(),
-                 "The same of the scores that say most, else 0.");
-  tables.addWide("score_correlation", packLower(forward.error_correlation),
+  tables.addWide("leading_weights", leading.weights, "The same of the scores that say most, else 0.");
+  tables.addWide("score_correlation", linalg::packColumns(forward.error_correlation),
                  "Correlation of the scores' errors: lower triangle, column by column.");
   tables.addWide("training_points", flattenColumns(forward.points),
                  "Training points in half widths of the box from its middle, point by point.");
   tables.addReal("training_scores", flattenColumns(forward.scores), "Their scores, point by point.");
   sizes.push_back({"WINDOWS", static_cast<long>(entries.size()), "groups of scores"});
+  const auto u = static_cast<int>(model.countUnknown()), m = static_cast<int>(forward.points.rows());
+  const int search =
+      exact::count_search(static_cast<int>(forward.getScoreCount()), u, m, static_cast<int>(entries.size()));
+  sizes.push_back({"SEARCH", search, "numbers of a search for the unknown"});
   sizes.push_back({"SLOPE_POINTS", static_cast<long>(slope_points), "most points with slopes"});
   sizes.push_back({"TERMS", static_cast<long>(terms), "most terms of a trend"});
   sizes.push_back(

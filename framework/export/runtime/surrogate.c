@@ -1,8 +1,6 @@
 /* The processes from parameters to scores (features in units of their noise, projected): a window of scores
    shares a covariance function, its length scales and a trend. */
 typedef struct {
-  int first, functions; /* its scores */
-  int leading;          /* of them, from the first on, those that the first search looks at */
   int quadratic, terms; /* the trend */
   smooth_process process;
   own_variance own;              /* without tiles: the variance is that of the nearest points */
@@ -59,44 +57,48 @@ static smooth_point find_point(twinmap_state *state, int index)
   return at;
 }
 
-/* Score j of a window at state->at and its derivatives with respect to the unknowns: each score's weights are
-   read from memory once. */
-static void evaluate_score(twinmap_state *state, const window *w, int j, const smooth_point *at, const double *terms)
+/* Score j of a window, of all the number `score`, at search->at and its derivatives with respect to the unknowns:
+   each score's weights are read from memory once. */
+static void evaluate_score(const score_search *search, const window *w, int j, int score, const smooth_point *at,
+                           const double *terms)
 {
+  const twinmap_state *state = search->owner;
   const smooth_process *process = &w->process;
   const wide_t *weights = w->weights + j * (process->points + process->slope_points * process->slope_variables);
   const wide_t *coefficients = w->coefficients + j * w->terms;
   double derivatives[TWINMAP_UNKNOWN], rising[TWINMAP_UNKNOWN];
   int v;
-  state->values[w->first + j] = dot(w->terms, coefficients, terms) + calc_function(process, weights, at);
+  search->values[score] = dot(w->terms, coefficients, terms) + calc_function(process, weights, at);
   calc_function_slopes(process, weights, at, TWINMAP_UNKNOWN, rising, derivatives);
   for (v = 0; v < TWINMAP_UNKNOWN; ++v) {
-    state->jacobian[v * TWINMAP_SCORES + w->first + j] =
+    search->jacobian[v * TWINMAP_SCORES + score] =
         derivatives[v] / w->length_scales[v] + dot(w->terms, coefficients, state->term_derivatives + v * w->terms);
   }
 }
 
 /* The first `count` scores of a window. */
-static void evaluate_window(twinmap_state *state, int index, int count)
+static void evaluate_window(const score_search *search, int index, int count)
 {
+  twinmap_state *state = search->owner;
   const window *w = &windows[index];
   const smooth_point at = find_point(state, index);
   double scaled[TWINMAP_VARIABLES];
   int j, v;
   for (v = 0; v < TWINMAP_VARIABLES; ++v) {
-    scaled[v] = state->at[v] / w->length_scales[v];
+    scaled[v] = search->at[v] / w->length_scales[v];
   }
   calc_point_covariance(&w->process, scaled, &at);
-  calc_terms(w, state->at, state->terms + index * TWINMAP_TERMS);
-  calc_term_derivatives(w, state->at, state->term_derivatives);
+  calc_terms(w, search->at, state->terms + index * TWINMAP_TERMS);
+  calc_term_derivatives(w, search->at, state->term_derivatives);
   for (j = 0; j < count; ++j) {
-    evaluate_score(state, w, j, &at, state->terms + index * TWINMAP_TERMS);
+    evaluate_score(search, w, j, score_windows[index].first + j, &at, state->terms + index * TWINMAP_TERMS);
   }
 }
 
 /* The standard deviations of a window's scores, at the point evaluated last. */
-static void calc_window_stddev(twinmap_state *state, int index)
+static void calc_window_stddev(const score_search *search, int index)
 {
+  twinmap_state *state = search->owner;
   const window *w = &windows[index];
   const smooth_point at = find_point(state, index);
   double rest[TWINMAP_TERMS], variance;
@@ -107,7 +109,21 @@ static void calc_window_stddev(twinmap_state *state, int index)
     variance = calc_local_variance(&w->process, &at, -1);
   }
   variance *= calc_local_factor(&w->process, w->left_out_ratios, &at);
-  for (j = 0; j < w->functions; ++j) {
-    state->stddev[w->first + j] = sqrt(variance * w->amplitudes[j]);
+  for (j = 0; j < score_windows[index].functions; ++j) {
+    search->stddev[score_windows[index].first + j] = sqrt(variance * w->amplitudes[j]);
   }
+}
+
+static const score_problem problem = {
+    TWINMAP_SCORES, TWINMAP_UNKNOWN, TWINMAP_VARIABLES, TWINMAP_WINDOWS, TWINMAP_POINTS,
+    score_windows, rough_weights, leading_weights, score_correlation, prior_mean, prior_relative,
+    training_points, training_scores, evaluate_window, calc_window_stddev};
+
+/* For the unknowns that explain the features. */
+static score_search begin_search(twinmap_state *state, const double *known)
+{
+  score_search search = lay_out_search(&problem, state, state->search);
+  calc_scores(state->features, search.scores);
+  set_known(known, search.at);
+  return search;
 }

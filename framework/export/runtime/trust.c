@@ -3,27 +3,21 @@
    map are from all it was trained on. */
 @TABLES@
 
-/* The point that explains the scores best, searched from the inferred one, and, if that explains too little,
-   from the most similar simulations; state->innovation: what it leaves, whitened. */
-static void explain_scores(twinmap_state *state, const double *inferred)
+/* state->innovation: what the point that explains the scores best leaves of them, whitened; searched from the
+   inferred parameters, other unknowns from the middle of their prior. */
+static void explain_scores(twinmap_state *state, const double *known, const double *parameters)
 {
-  double start[MOST_STARTS * U];
-  int i, v, best = 0;
-  state->evaluated = EVALUATED_NONE;
-  for (v = 0; v < U; ++v) {
-    start[v] = fmin(fmax(inferred[v], -1.0), 1.0);
+  score_search search = begin_search(state, known);
+  double inferred[TWINMAP_UNKNOWN];
+  int i;
+  for (i = 0; i < TWINMAP_UNKNOWN; ++i) {
+    inferred[i] = i < TWINMAP_PARAMETERS ? (parameters[i] - box_center[i]) / box_half_width[i] : prior_mean[i];
   }
-  search_roughly(state, 1, start);
-  if (is_misfit(state->minima[0].objective, TWINMAP_SCORES)) {
-    search_roughly(state, 1 + find_starts(state, 3, start + U), start);
+  search_from(&search, inferred);
+  for (i = 0; i < search.minimum_count; ++i) {
+    refine_minimum(&search, i, 0);
   }
-  for (i = 0; i < state->minimum_count; ++i) {
-    refine_minimum(state, i, 0);
-    if (state->minima[i].objective < state->minima[best].objective) {
-      best = i;
-    }
-  }
-  keep_explanation(state, best);
+  memcpy(state->innovation, search.minima[find_least(&search)].innovation, sizeof state->innovation);
 }
 
 /* Along a direction among the residuals. */
@@ -53,7 +47,7 @@ static void add_direction(double factor, const real_t *direction, double *left)
 }
 
 /* All that the point leaves of the features, in numbers that are independent and of unit variance if the
-   model is right. */
+   model is right. state->innovation: then how much of it is missing along the scores' directions. */
 static void calc_leftover(twinmap_state *state)
 {
   double *left = state->leftover;
@@ -71,11 +65,10 @@ static void calc_leftover(twinmap_state *state)
   }
 #endif
   for (j = 0; j < TWINMAP_SCORES; ++j) {
-    state->residual[j] =
-        state->innovation[j] - dot_real(score_directions + j * TWINMAP_RESIDUALS, left);
+    state->innovation[j] -= dot_real(score_directions + j * TWINMAP_RESIDUALS, left);
   }
   for (j = 0; j < TWINMAP_SCORES; ++j) {
-    add_direction(state->residual[j], score_directions + j * TWINMAP_RESIDUALS, left);
+    add_direction(state->innovation[j], score_directions + j * TWINMAP_RESIDUALS, left);
   }
 #if TWINMAP_UNMODELLED
   {
@@ -186,18 +179,12 @@ static unsigned find_statuses(const twinmap_result *result)
 
 static void judge(twinmap_state *state, const double *known, twinmap_result *result)
 {
-  double inferred[U];
   int i;
-  for (i = 0; i < U; ++i) {
-    inferred[i] = i < TWINMAP_PARAMETERS ? (result->mean[i] - box_center[i]) / box_half_width[i] : prior_mean[i];
-  }
   for (i = 0; i < TWINMAP_FEATURES; ++i) {
     state->centered[i] = state->features[i] - feature_center[i];
   }
   if (!state->explanation_found) { /* else the map's own search found it */
-    calc_scores(state);
-    set_known(state, known);
-    explain_scores(state, inferred);
+    explain_scores(state, known, result->mean);
   }
   calc_leftover(state);
   result->chi_square = dot(TWINMAP_RESIDUALS, state->leftover, state->leftover);

@@ -83,27 +83,9 @@ typedef struct {
   double projected[TWINMAP_SLOPE_POINTS + 1];
   double terms[TWINMAP_WINDOWS * TWINMAP_TERMS], term_derivatives[TWINMAP_TERMS * TWINMAP_VARIABLES];
   double buffer[TWINMAP_PADDED_POINTS];
-  /* of the search for the point that explains the scores */
-  double scores[TWINMAP_SCORES], values[TWINMAP_SCORES], residual[TWINMAP_SCORES], stddev[TWINMAP_SCORES];
-  double jacobian[TWINMAP_SCORES * TWINMAP_UNKNOWN], scaled_jacobian[TWINMAP_SCORES * TWINMAP_UNKNOWN];
-  double lower[TWINMAP_SCORES * (TWINMAP_SCORES + 1) / 2], log_determinant;
-  double normal[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN], descent[TWINMAP_UNKNOWN];
-  double at[TWINMAP_VARIABLES], widening[TWINMAP_WINDOWS];
-  int evaluated, explanation_found;
-  struct {
-    double point[TWINMAP_UNKNOWN], objective;
-    double mean[TWINMAP_UNKNOWN], covariance[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN];
-    double information[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN], noise_information[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN];
-    double shift[TWINMAP_UNKNOWN], innovation[TWINMAP_SCORES];
-    int widened;
-  } minima[4];
-  int minimum_count;
-  double noise_stddev[TWINMAP_UNKNOWN], limit_stddev[TWINMAP_PARAMETERS];
-  double innovation[TWINMAP_SCORES], explained[TWINMAP_UNKNOWN];
-  double mixed_mean[TWINMAP_UNKNOWN], mixed_covariance[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN];
-  double box_buffer[TWINMAP_UNKNOWN * (TWINMAP_UNKNOWN + 3)];
-  double small[TWINMAP_UNKNOWN * TWINMAP_UNKNOWN], trial[TWINMAP_UNKNOWN], step[TWINMAP_UNKNOWN];
-  double offset[TWINMAP_UNKNOWN], pull[TWINMAP_UNKNOWN];
+  double search[TWINMAP_SEARCH]; /* for the point that explains the scores */
+  double innovation[TWINMAP_SCORES];
+  int explanation_found;
 #endif
 #if TWINMAP_TRUST
   double centered[TWINMAP_FEATURES], leftover[TWINMAP_RESIDUALS];

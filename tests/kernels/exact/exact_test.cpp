@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "kernels/linalg/decompositions.hpp"
+#include "kernels/linalg/packed_lower.hpp"
 #include "kernels/surrogate/slope_covariance.hpp"
 #include "tests/kernels/support/random_data.hpp"
 
@@ -18,16 +19,6 @@ using test::randomMatrix;
 
 int size(const VectorXd& vector) {
   return static_cast<int>(vector.size());
-}
-
-/// Lower triangle, column by column.
-VectorXd pack(const MatrixXd& lower) {
-  const Index n = lower.rows();
-  VectorXd packed(n * (n + 1) / 2);
-  for (Index j = 0, at = 0; j < n; at += n - j, ++j) {
-    packed.segment(at, n - j) = lower.col(j).tail(n - j);
-  }
-  return packed;
 }
 
 MatrixXd makePositiveDefinite(Index n) {
@@ -46,69 +37,14 @@ TEST(Exact, DotIsTheSumForEveryCountOfLanes) {
   }
 }
 
-TEST(Exact, FactorsSolveAndDeterminantsAreThoseOfCholesky) {
+TEST(Exact, PackedTrianglesAreSolved) {
   for (Index n : {1, 2, 5, 6, 31}) {
-    const MatrixXd matrix = makePositiveDefinite(n);
-    const MatrixXd expected = linalg::calcCholesky(matrix).lower;
-    VectorXd factor = pack(matrix);
-    exact::factorise(static_cast<int>(n), factor.data());
-    EXPECT_LT((factor - pack(expected)).cwiseAbs().maxCoeff(), 1e-12) << n;
+    const MatrixXd lower = linalg::calcCholesky(makePositiveDefinite(n)).lower;
     VectorXd x = randomMatrix(n, 1, 3);
-    const VectorXd solved = linalg::solveLower(expected, x);
-    exact::solveColumns(static_cast<int>(n), factor.data(), x.data());
+    const VectorXd solved = linalg::solveLower(lower, x);
+    exact::solveColumns(static_cast<int>(n), linalg::packColumns(lower).data(), x.data());
     EXPECT_LT((x - solved).cwiseAbs().maxCoeff(), 1e-11) << n;
-    const double determinant = 2.0 * expected.diagonal().array().log().sum();
-    EXPECT_NEAR(exact::calcLogDeterminant(static_cast<int>(n), factor.data()), determinant, 1e-11);
-    MatrixXd room(n, n);
-    EXPECT_NEAR(exact::calcSmallLogDeterminant(static_cast<int>(n), matrix.data(), room.data()), determinant,
-                1e-11);
   }
-}
-
-TEST(Exact, AStepIsTheDampedOneUnderItsPrior) {
-  const MatrixXd root = randomMatrix(3, 3, 6), relative = root * root.transpose();
-  const VectorXd mean = (VectorXd(3) << 0.1, 0.3, -0.2).finished();
-  const MatrixXd jacobian = randomMatrix(20, 3, 4);
-  MatrixXd information(3, 3), room(3, 3);
-  exact::calcInformation(20, 3, jacobian.data(), information.data());
-  EXPECT_LT((information - jacobian.transpose() * jacobian).cwiseAbs().maxCoeff(), 1e-13);
-  const VectorXd unknown = (VectorXd(3) << 0.2, -0.7, 0.4).finished(), gradient = randomMatrix(3, 1, 5);
-  VectorXd step = gradient, offset(3), pull(3);
-  exact::calcPull(3, relative.data(), mean.data(), unknown.data(), offset.data(), pull.data());
-  EXPECT_LT((pull - relative * (unknown - mean)).cwiseAbs().maxCoeff(), 1e-14);
-  ASSERT_TRUE(
-      exact::solveStep(3, information.data(), relative.data(), pull.data(), 0.5, room.data(), step.data()));
-  MatrixXd damped = information;
-  damped.diagonal() *= 1.5;
-  damped += 3.0 * relative;
-  EXPECT_LT((step - linalg::solvePositiveDefinite(damped, gradient - 3.0 * pull)).cwiseAbs().maxCoeff(),
-            1e-13);
-}
-
-TEST(Exact, TheBoxPullsWithTheUnknownsThemselves) {
-  const MatrixXd box = MatrixXd::Identity(3, 3);
-  const VectorXd middle = VectorXd::Zero(3), unknown = randomMatrix(3, 1, 7);
-  VectorXd offset(3), pull(3);
-  exact::calcPull(3, box.data(), middle.data(), unknown.data(), offset.data(), pull.data());
-  EXPECT_EQ(pull, unknown);
-}
-
-TEST(Exact, AStepWithoutPositiveInformationIsRefused) {
-  const MatrixXd information = -10.0 * MatrixXd::Identity(2, 2);
-  const MatrixXd box = MatrixXd::Identity(2, 2);
-  const VectorXd pull = VectorXd::Zero(2);
-  MatrixXd room(2, 2);
-  VectorXd step = VectorXd::Ones(2);
-  EXPECT_FALSE(
-      exact::solveStep(2, information.data(), box.data(), pull.data(), 0.0, room.data(), step.data()));
-}
-
-TEST(Exact, ErrorsAreEnlargedToTheResidualsOnlyWhereTheseAreBeyondThem) {
-  const VectorXd stddev = VectorXd::Constant(8, 2.0), scores = VectorXd::Zero(8);
-  const VectorXd near = VectorXd::Constant(8, 2.0), far = VectorXd::Constant(8, 21.0);
-  EXPECT_EQ(exact::calcWidening(8, stddev.data(), scores.data(), near.data()), 0.0);
-  // squares 441 each: (441 - 1) / 4 = 110
-  EXPECT_NEAR(exact::calcWidening(8, stddev.data(), scores.data(), far.data()), std::sqrt(110.0), 1e-12);
 }
 
 /// Derivatives of the first variables, at a point of five.
