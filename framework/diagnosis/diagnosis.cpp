@@ -320,7 +320,7 @@ std::vector<std::string> Diagnosis::listTerms() const {
 std::vector<std::string> Diagnosis::listFaults() const {
   std::vector<std::string> faults = listRecordingFaults(alone);
   const auto is_tested = [&](const std::string& fault) {
-    return fault == getNotice(Notice::kClockFault).name ||
+    return twinmap::getStatus(fault).concern == Concern::kNuisance ||
            (fault == getNotice(Notice::kSensorOffset).name && alone.size() == 1) ||
            (fault == getNotice(Notice::kNoiseColoured).name && !is_coloured);
   };

@@ -40,7 +40,7 @@ CandidateKinds chooseKinds(const SimulatorFit& fit, double recordings) {
 KnownFit findBest(const InferredMeasurement& inferred, Index u) {
   const SimulatorFit* fit = findFit(inferred);
   if (fit != nullptr && fit->best.size() >= u) {
-    // before the sizes of a clock's faults
+    // before the sizes of a recording's nuisance
     return {fit->best.head(u), fit->chi_square, fit->degrees, chooseKinds(*fit, 1.0)};
   }
   if (inferred.refined && inferred.refined->isAccepted() && inferred.refined->point.size() >= u) {
@@ -185,16 +185,16 @@ ModelTest testExplained(const ExperimentSpec& experiment, const RecordedFeatures
   return testBesideFaults(experiment, explained, recording, known);
 }
 
-/// The recordings whose clocks have no fault, and the point without what is of the others alone.
-std::pair<RecordedFeatures, VectorXd> leaveClocks(const ExperimentSpec& experiment,
-                                                  const RecordedFeatures& recordings,
-                                                  const JointInference& inferred) {
+/// The recordings without a nuisance, and the point without what is of the others alone.
+std::pair<RecordedFeatures, VectorXd> leaveNuisance(const ExperimentSpec& experiment,
+                                                    const RecordedFeatures& recordings,
+                                                    const JointInference& inferred) {
   std::vector<std::size_t> kept;
   auto next = static_cast<Index>(experiment.model.parameters.size());
   VectorXd point = inferred.joint.best.head(next);
   for (std::size_t k = 0; k < inferred.alone.size(); ++k) {
     const auto own = static_cast<Index>(recordings.makeExperiment(experiment, k).model.nuisance.size());
-    const std::size_t faults = inferred.alone[k].inferred.clock_faults.size();
+    const std::size_t faults = inferred.alone[k].inferred.countSizes();
     if (faults == 0) {
       kept.push_back(k);
       point.conservativeResize(point.size() + own);
@@ -216,7 +216,7 @@ bool isKnown(const ExperimentSpec& experiment) {
 }
 
 bool isMisfit(const InferredMeasurement& inferred) {
-  return isMismatch(listStatuses(inferred)) || !inferred.clock_faults.empty();
+  return isMismatch(listStatuses(inferred)) || inferred.nuisance.has_value();
 }
 
 }  // namespace
@@ -282,8 +282,8 @@ void testModel(const ExperimentSpec& experiment, const RecordedFeatures& recordi
   RecordedFeatures without = recordings, explained = recordings;
   takeFaults(inferred.alone, {}, without);
   takeFaults(inferred.alone, {true, true, true}, explained);
-  const auto [kept, point] = leaveClocks(experiment, explained, inferred);
-  const RecordedFeatures kept_without = leaveClocks(experiment, without, inferred).first;
+  const auto [kept, point] = leaveNuisance(experiment, explained, inferred);
+  const RecordedFeatures kept_without = leaveNuisance(experiment, without, inferred).first;
   if (kept.features.empty()) {
     return;
   }

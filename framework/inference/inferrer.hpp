@@ -1,17 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "framework/base/log/notice.hpp"
 #include "framework/estimation/derived/derived_quantities.hpp"
 #include "framework/estimation/refined/refined.hpp"
 #include "framework/estimation/ridges/identified_combinations.hpp"
 #include "framework/estimation/scatter.hpp"
 #include "framework/estimation/trained/online_model.hpp"
 #include "framework/inference/asked.hpp"
-#include "framework/inference/clock_fault.hpp"
 #include "framework/inference/measurement_reader.hpp"
 #include "framework/inference/posterior_estimate.hpp"
 #include "framework/inference/stated_prior.hpp"
@@ -29,9 +31,6 @@ struct MissingTerm {
   std::vector<std::string> rivals{};  ///< terms that the measurement does not tell from it
   bool explains = false;              ///< whether what remains with it is noise as it is stated
   double share_of_all = 0.0;          ///< of the whole misfit that it takes away
-
-  /// Whether it says of time what a clock's fault does.
-  bool isOfTime() const { return term.rfind("delay.", 0) == 0 || term.rfind("clock.", 0) == 0; }
 };
 
 /// The term that may move a parameter most without being noticed.
@@ -46,6 +45,27 @@ struct UnnoticedTerm {
 struct ModelTest {
   std::optional<MissingTerm> missing{};
   std::optional<UnnoticedTerm> unnoticed{};  ///< none where the size of the noise was not stated
+};
+
+/// A nuisance parameter of one recording.
+struct NuisanceSize {
+  std::string name;  ///< "late", in JSON
+  double value = 0.0, stddev = 0.0;
+  std::optional<double> from{};  ///< s: the first time that it acts at, if not the recording's
+};
+
+/// What is off in a recording, not in the machine, as its recorder's clock.
+struct RecordingNuisance {
+  Notice notice{};                         ///< the status that names it
+  std::string kind{};                      ///< "clock", in JSON
+  std::vector<std::string> alike_terms{};  ///< how terms (framework/diagnosis) begin that say the same
+  std::vector<NuisanceSize> sizes{};       ///< the last of the recording's unknown parameters, in this order
+  std::string text{};                      ///< "the record is 20 ms late (sd 0.1 ms)"
+
+  bool isAlike(const std::string& term) const {
+    return std::any_of(alike_terms.begin(), alike_terms.end(),
+                       [&](const std::string& begin) { return term.rfind(begin, 0) == 0; });
+  }
 };
 
 /// How a recording was cut, where it was inferred in segments.
@@ -72,7 +92,7 @@ struct InferredMeasurement {
   /// u x n: the separate places that fit by the estimator, in the parameters' units, the likeliest first;
   /// one, or none where the estimator does not look for them.
   Eigen::MatrixXd basins{};
-  std::vector<ClockFault> clock_faults{};  ///< of the recorder, inferred with the parameters
+  std::optional<RecordingNuisance> nuisance{};  ///< that explains it
   std::string fault{};  ///< of the measurement, that explains a gross misfit (explainByFault()); "" of none
   std::optional<ModelTest> model_test{};  ///< where a simulation explains it, and the model is known
   bool coverage_is_short = false;  ///< of the run's refined test samples, where the refinement was accepted
@@ -86,6 +106,9 @@ struct InferredMeasurement {
   std::optional<SegmentReport> segments{};
   /// Of each parameter, over recordings that disagree; else empty.
   std::vector<ScatterEstimate> scatter{};
+
+  /// Unknown parameters behind the model's own.
+  std::size_t countSizes() const { return nuisance ? nuisance->sizes.size() : 0; }
 
   /// Null of none.
   const MissingTerm* findMissing() const {

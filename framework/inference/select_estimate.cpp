@@ -52,10 +52,8 @@ void addNoise(const SimulatorFit& fit, Statuses& statuses) {
 /// Where the simulator's best point lies beyond them, whatever is said beside.
 void addBounds(const InferredMeasurement& inferred, Statuses& statuses) {
   const PosteriorEstimate* posterior = findSimulated(inferred);
-  const char* name = toString(TrustStatus::kAtBounds);
-  if (posterior != nullptr && !posterior->fit->beyond.empty() &&
-      std::find(statuses.begin(), statuses.end(), name) == statuses.end()) {
-    statuses.emplace_back(name);
+  if (posterior != nullptr && !posterior->fit->beyond.empty() && !hasStatus(statuses, Notice::kAtBounds)) {
+    statuses.emplace_back(toString(TrustStatus::kAtBounds));
   }
 }
 
@@ -68,8 +66,8 @@ Statuses listOfSampled(const InferredMeasurement& inferred) {
   if (inferred.posterior->fit && !inferred.posterior->fit->outliers.empty()) {
     statuses.emplace_back("outliers");
   }
-  if (!inferred.clock_faults.empty()) {
-    statuses.emplace_back("clock_fault");
+  if (inferred.nuisance) {
+    statuses.emplace_back(getNotice(inferred.nuisance->notice).name);
   }
   if (inferred.posterior->fit) {
     addNoise(*inferred.posterior->fit, statuses);
@@ -118,16 +116,17 @@ Statuses listOfOthers(const InferredMeasurement& inferred) {
 }
 
 /// A term goes before noise that explains a measurement as well. What the noise was taken for is then left
-/// out, if stated noise remains with the term. So it goes before a clock's fault, which is said beside.
+/// out, if stated noise remains with the term. So it goes before a nuisance of the recording, which is said
+/// beside.
 void addMissing(const InferredMeasurement& inferred, Statuses& statuses) {
   const MissingTerm* missing = inferred.findMissing();
-  const bool has_clock = !inferred.clock_faults.empty();
-  const bool is_said = missing != nullptr && !isMismatch(statuses) &&
-                       (!has_clock || (missing->explains && !missing->isOfTime()));
+  const bool is_said =
+      missing != nullptr && !isMismatch(statuses) &&
+      (!inferred.nuisance || (missing->explains && !inferred.nuisance->isAlike(missing->term)));
   if (!is_said) {
     return;
   }
-  if (missing->explains && !has_clock) {
+  if (missing->explains && !inferred.nuisance) {
     dropExcuses(statuses);
   }
   statuses.insert(statuses.begin(), "missing_term");
@@ -213,6 +212,10 @@ bool isUncalibrated(const InferredMeasurement& inferred) {
          (isAccepted(inferred) ? inferred.coverage_is_short : inferred.estimator_coverage_is_short);
 }
 
+bool hasStatus(const std::vector<std::string>& statuses, Notice notice) {
+  return std::find(statuses.begin(), statuses.end(), getNotice(notice).name) != statuses.end();
+}
+
 bool isMismatch(const std::vector<std::string>& statuses) {
   return !statuses.empty() && statuses.front() == toString(TrustStatus::kModelMismatch);
 }
@@ -236,17 +239,14 @@ std::vector<std::string> listStatuses(const InferredMeasurement& inferred) {
 
 bool misleads(const std::vector<std::string>& statuses) {
   return std::any_of(statuses.begin(), statuses.end(), [](const std::string& status) {
-    const std::vector<NoticeText>& notices = listNotices();
-    return std::any_of(notices.begin(), notices.end(), [&](const NoticeText& notice) {
-      return notice.is_status && notice.severity == Severity::kMisleading && status == notice.name;
-    });
+    return getStatus(status).severity == Severity::kMisleading;
   });
 }
 
 void dropExcuses(std::vector<std::string>& statuses) {
   const auto is_excuse = [](const std::string& status) {
     return status == "noise_coloured" || status == "sensor_offset" || status == "noise_larger" ||
-           status == "clock_fault";
+           getStatus(status).concern == Concern::kNuisance;
   };
   statuses.erase(std::remove_if(statuses.begin(), statuses.end(), is_excuse), statuses.end());
 }

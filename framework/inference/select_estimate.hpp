@@ -28,18 +28,14 @@ bool isEstimatorLimited(const InferredMeasurement& inferred);
 /// estimator, or refined.
 bool isUncalibrated(const InferredMeasurement& inferred);
 
-/// Names of all that is to be said against an estimate, the most severe first. "missing_term" is first where
-/// a term explains what noise explains as well. Others: "not_simulated"; what the trust model says or,
-/// without one, "model_mismatch" (testResidual, below kMismatchLevel) and "outliers" (samples that are not
-/// noise and were left out), "noise_larger" or "noise_smaller" than stated (and inferred), "clock_fault" (of
-/// the recorder, inferred), "noise_coloured" (its autocorrelation is inferred), "sensor_offset" (inferred);
-/// "uninformative"; "multimodal" where several values that lie apart fit; "nonlinear" or
-/// "not_refined" where a refinement was tried and not accepted; "unreliable" where the simulator's posterior
-/// was sampled and its draws do not stand for it; "uncalibrated"; "estimator_limited";
-/// "posterior_uncalibrated" where the surrogate's posterior is beside it and in doubt. Of the simulator's
+/// Names of all that is to be said against an estimate (listNotices), the most severe first. "missing_term"
+/// is first where a term explains what noise explains as well. "model_mismatch" is of the trust model or,
+/// without one, of the simulator's residual (testResidual, below kMismatchLevel). Of the simulator's
 /// posterior neither what the estimator was trained on nor how a refinement ended is said. {"ok"} where
 /// nothing is; empty where nobody has judged.
 std::vector<std::string> listStatuses(const InferredMeasurement& inferred);
+
+bool hasStatus(const std::vector<std::string>& statuses, Notice notice);
 
 /// Whether the most severe of the statuses is model_mismatch: then no other remedy helps.
 bool isMismatch(const std::vector<std::string>& statuses);

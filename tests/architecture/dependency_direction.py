@@ -128,7 +128,7 @@ ALLOWED = {
 # The folders of a room, those that others of it build on first; a room that is not here has no order within.
 ORDER_WITHIN = {
     "data": ["features", "measurement", "noise", "reduction", "sensitivity"],
-    "estimation": ["gp", "surrogate", "network", "refined", "segments", "posterior", "trained"],
+    "estimation": ["gp", "surrogate", "network", "refined", "posterior", "trained"],
     "study": ["samples", "pipeline", "verification", "replay", "diagnosis", "sweep", "shards"],
 }
 

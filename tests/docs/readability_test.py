@@ -12,7 +12,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(os.environ["TWINMAP_SOURCE_DIR"])
-MOST_WORDS, MOST_OF_A_PAGE, LONGEST_MEDIAN = 34640, 2500, 20
+MOST_WORDS, MOST_OF_A_PAGE, LONGEST_MEDIAN = 34770, 2500, 20
 # A sentence of a docstring has at most 25 words, subject first and condition second. So many have more or begin with a
 # condition, from before there was a rule. Who makes them fewer writes the smaller number here.
 LONGEST_OF_A_DOCSTRING, LONGER_ONES, CONDITIONS_FIRST = 25, 970, 126

@@ -37,28 +37,31 @@ const std::vector<NoticeText> kStatuses{
      "The response hardly depends on the parameter, or other parameters make up for its changes."},
     {Notice::kOutliers, "outliers", true, kInfo, "{0} not noise and left out: {1}",
      "Look at these samples of the recording; the estimate does not rest on them.",
-     "A spike of a sensor or a lost packet; without these few samples the model explains the recording."},
+     "A spike of a sensor or a lost packet; without these few samples the model explains the recording.",
+     Concern::kSensor},
     {Notice::kClockFault, "clock_fault", true, kDegraded, "{0}; the intervals follow it",
      "Look at the recorder, its trigger and sample rate; if it is sound, ask what the model lacks: twinmap "
      "diagnose FILE RECORDINGS.",
      "The residuals are noise where the times of the recording are corrected like this; a little friction or "
-     "damping that the model lacks may look alike."},
+     "damping that the model lacks may look alike.",
+     Concern::kNuisance},
     {Notice::kNoiseLarger, "noise_larger", true, kDegraded,
      "the noise is {0:.3g} times what the file states; the intervals are those of the noise found",
      "State the noise that was found: noise.stddev.",
-     "The residuals are as independent as noise, but larger than stated."},
+     "The residuals are as independent as noise, but larger than stated.", Concern::kSensor},
     {Notice::kNoiseSmaller, "noise_smaller", true, kInfo,
      "the noise is {0:.3g} times what the file states; the intervals are those of the noise found",
      "State the noise that was found: noise.stddev.",
-     "The residuals are as independent as noise, but smaller than stated."},
+     "The residuals are as independent as noise, but smaller than stated.", Concern::kSensor},
     {Notice::kNoiseColoured, "noise_coloured", true, kInfo,
      "the noise of {0} is coloured, {1}; the intervals follow it",
      "State it: noise.correlation; or look whether the model lacks something small.",
-     "Neighbouring residuals are alike, or alternate, and are no larger than the stated noise."},
+     "Neighbouring residuals are alike, or alternate, and are no larger than the stated noise.",
+     Concern::kSensor},
     {Notice::kSensorOffset, "sensor_offset", true, kInfo,
      "{0} reads {1} too much (sd {2}); the estimate does without this constant",
      "Take the offset off the recording, or let the model have it as a nuisance parameter.",
-     "The residuals are noise about a constant that no parameter explains."},
+     "The residuals are noise about a constant that no parameter explains.", Concern::kSensor},
     {Notice::kMultimodal, "multimodal", true, kMisleading,
      "several separate sets of parameter values fit the measurement",
      "Measure another output that separates them, or exclude all but one by the bounds.",
@@ -270,6 +273,13 @@ const NoticeText& getNotice(Notice notice) {
   const NoticeText& found = listNotices().at(static_cast<std::size_t>(notice));
   assert(found.notice == notice);
   return found;
+}
+
+const NoticeText& getStatus(const std::string& name) {
+  const auto found = std::find_if(listNotices().begin(), listNotices().end(), [&](const NoticeText& notice) {
+    return notice.is_status && name == notice.name;
+  });
+  return found == listNotices().end() ? getNotice(Notice::kOk) : *found;
 }
 
 bool saysNotice(const std::string& text, Notice notice) {

@@ -79,6 +79,10 @@ enum class Notice {
   kSetAside
 };
 
+/// What of a recording, not of the machine, a status names: samples and noise of its sensors, or a nuisance
+/// that is inferred with the parameters.
+enum class Concern { kOther, kSensor, kNuisance };
+
 /// What a status or warning says and means.
 struct NoticeText {
   Notice notice;
@@ -88,11 +92,14 @@ struct NoticeText {
   const char* happened;  ///< its first line, with places {0}, {1} ... for numbers and names
   const char* remedy;    ///< its second line: the one thing to do; "" where nothing need be done
   const char* cause;     ///< how it comes about
+  Concern concern = Concern::kOther;
 };
 
 /// All, in the order of Notice.
 const std::vector<NoticeText>& listNotices();
 const NoticeText& getNotice(Notice notice);
+/// That of kOk for a name that none has.
+const NoticeText& getStatus(const std::string& name);
 
 /// "what happened\n  what to do", its places filled with the arguments.
 template <class... Arguments>

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "framework/estimation/posterior/noise/noise_hypothesis.hpp"
 #include "framework/estimation/refined/misfit.hpp"
-#include "framework/estimation/segments/segmented_recording.hpp"
 
 namespace twinmap {
 
@@ -19,8 +19,8 @@ struct MeasuredTrial {
   std::vector<Eigen::Index> unknown;  ///< which of all unknown parameters the trial's are, in its order
   NoiseHypothesis noise{};
   std::shared_ptr<const RefinementModel> own_model{};  ///< `model`, where it is of this measurement alone
-  /// In the place of model, features, held and noise, where the trial is a recording in segments.
-  std::shared_ptr<const SegmentedRecording> segments{};
+  /// In the place of model, features, held and noise, where the trial is not simulated whole.
+  std::function<std::unique_ptr<MeasuredMisfit>()> make_misfit{};
   /// What the measurement shows of its unknown parameters, NaN of others; empty: of none (readShownStart).
   Eigen::VectorXd shown{};
 };

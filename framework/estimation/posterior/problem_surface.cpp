@@ -14,9 +14,9 @@ using Eigen::VectorXd;
 std::vector<MeasuredPart> ProblemSurface::makeParts(const PosteriorProblem& problem) {
   std::vector<MeasuredPart> parts;
   for (const MeasuredTrial& trial : problem.trials) {
-    if (trial.segments) {
-      segmented_.push_back(std::make_unique<SegmentedMisfit>(*trial.simulator, *trial.segments));
-      parts.push_back({segmented_.back().get(), nullptr, trial.unknown});
+    if (trial.make_misfit) {
+      others_.push_back(trial.make_misfit());
+      parts.push_back({others_.back().get(), nullptr, trial.unknown});
       continue;
     }
     parts_.push_back(std::make_unique<TrialMisfit>(trial));

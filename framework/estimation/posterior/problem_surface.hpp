@@ -6,7 +6,6 @@
 
 #include "framework/estimation/posterior/basins/basin_search.hpp"
 #include "framework/estimation/posterior/posterior_problem.hpp"
-#include "framework/estimation/segments/segmented_misfit.hpp"
 
 namespace twinmap {
 
@@ -38,7 +37,7 @@ class ProblemSurface {
   const LogCoordinates coordinates_;
   const Prior prior_;
   std::vector<std::unique_ptr<TrialMisfit>> parts_;
-  std::vector<std::unique_ptr<SegmentedMisfit>> segmented_;
+  std::vector<std::unique_ptr<MeasuredMisfit>> others_;  // of trials that are not simulated whole
   MisfitSurface surface_;
 };
 

@@ -25,7 +25,7 @@ namespace {
 /// Of a single measurement, the residual as its hypothesis of the noise explains it.
 ResidualLoss::Standardized standardize(MisfitSurface& surface, const MeasuredTrial& trial,
                                        const LocalSurface& best) {
-  if (trial.segments) {
+  if (trial.make_misfit) {
     return {best.residual, {}, best.degrees, {}};
   }
   MatrixXd jacobian(best.residual.size(), 0);

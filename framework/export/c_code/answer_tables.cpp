@@ -52,7 +52,6 @@ void addTrust(const TrustModel& trust, CTables& tables, CSizes& sizes) {
 }
 
 void addResult(const ExportedModel& model, const std::string& prefix, CTables& tables, CSizes& sizes) {
-  const SurrogateValidation* validation = model.findValidation();
   std::vector<std::string> names, units;
   for (const ParameterSpec& parameter : model.experiment.model.parameters) {
     names.push_back(parameter.name.text);
@@ -64,14 +63,14 @@ void addResult(const ExportedModel& model, const std::string& prefix, CTables& t
     tables.addStrings(prefix + "_signal_names", model.layout.output_names, "The measured signals.");
     tables.addStrings(prefix + "_signal_units", model.layout.output_units, "Their units.");
   }
-  if (model.findNetwork() == nullptr) {
+  if (!model.online.map->givesCorrelations()) {
     tables.addWide("parameter_correlation", flattenColumns(model.getCorrelation()),
                    "Correlation of the errors of a sample's parameters.");
   }
   tables.addWide("interval_factor", model.getIntervalFactors(),
                  "Half widths of 95 % intervals in standard deviations.");
-  const bool calibrated = (validation == nullptr || validation->status == SurrogateStatus::kOk) &&
-                          (!model.online.trust || !model.online.trust->coverage.isShort());
+  const bool calibrated =
+      model.online.map->isCalibrated() && (!model.online.trust || !model.online.trust->coverage.isShort());
   sizes.push_back({"UNCALIBRATED", calibrated ? 0 : 1, "1: the map is known to misjudge its own errors"});
 }
 

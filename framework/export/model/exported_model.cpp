@@ -26,14 +26,6 @@ const NetworkMap* ExportedModel::findNetwork() const {
   return network == nullptr ? nullptr : &network->getMap();
 }
 
-const SurrogateValidation* ExportedModel::findValidation() const {
-  if (const Surrogate* surrogate = findSurrogate()) {
-    return &surrogate->validation;
-  }
-  const NetworkMap* network = findNetwork();
-  return network == nullptr ? nullptr : &network->validation;
-}
-
 const ForwardSurrogate* ExportedModel::findForward() const {
   if (const auto forward = online.map->findForward()) {
     return forward.get();
@@ -65,10 +57,8 @@ Eigen::MatrixXd ExportedModel::getCorrelation() const {
 }
 
 VectorXd ExportedModel::getIntervalFactors() const {
-  const SurrogateValidation* validation = findValidation();
-  return validation != nullptr && validation->interval_factors.isGiven()
-             ? VectorXd(validation->interval_factors.of95)
-             : VectorXd::Constant(countParameters(), kNormal95);
+  const IntervalFactors factors = online.map->getIntervalFactors();
+  return factors.isGiven() ? VectorXd(factors.of95) : VectorXd::Constant(countParameters(), kNormal95);
 }
 
 VectorXd ExportedModel::getBoxCenter() const {
@@ -97,7 +87,7 @@ ExportedModel loadExportedModel(const std::filesystem::path& run_or_maps) {
     throw std::runtime_error(findMaps(run_or_maps).string() + ": an estimator of the kind " +
                              model.online.map->getKind() + " cannot be exported");
   }
-  if (network != nullptr && network->countComponents() > 1) {
+  if (model.online.map->givesMixtures()) {
     throw std::runtime_error(
         findMaps(run_or_maps).string() +
         ": a network whose estimates are mixtures cannot be exported; train one with 'head: gaussian'");

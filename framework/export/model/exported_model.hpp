@@ -26,8 +26,6 @@ struct ExportedModel {
   const GpMap* findProcesses() const;
   const Surrogate* findSurrogate() const;
   const NetworkMap* findNetwork() const;
-  /// What is known of the errors of a surrogate or a network; else null.
-  const SurrogateValidation* findValidation() const;
   /// The processes from parameters to scores, of the map or else of the trust model; or null.
   const ForwardSurrogate* findForward() const;
 

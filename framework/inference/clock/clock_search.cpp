@@ -59,15 +59,14 @@ SlipPlace scanSlips(const VectorXd& residual, const MatrixXd& jacobian, const Ve
 
 class ClockSearch {
  public:
-  explicit ClockSearch(const RecordedSamples& recorded) : recorded_(recorded) {
-    for (const OutputNoise& noise : recorded.noise.outputs) {
-      is_unknown_ = is_unknown_ || !noise.factor;
-    }
-  }
+  explicit ClockSearch(const RecordedSamples& recorded)
+      : recorded_(recorded),
+        is_unknown_(std::any_of(recorded.noise.outputs.begin(), recorded.noise.outputs.end(),
+                                [](const OutputNoise& noise) { return !noise.factor; })) {}
 
   /// The fit with the fewest faults that leaves noise; not given where none does.
   ClockedFit find(const VectorXd& best) const {
-    const ClockFault late{ClockFaultKind::kLate}, rate{ClockFaultKind::kRate};
+    const NuisanceSize late{"late"}, rate{"rate"};
     ClockedFit slips = addSlip(linearizeClocked(recorded_, best, {}));
     ClockedFit simplest;
     for (ClockedFit fit : {fitClock(recorded_, best, {late}), fitClock(recorded_, best, {rate}), slips}) {
@@ -125,7 +124,7 @@ class ClockSearch {
 
   /// Chi-square, and for a slip that it may be anywhere.
   double calcCost(const ClockedFit& fit) const {
-    const bool is_slip = fit.faults.front().kind == ClockFaultKind::kSlip;
+    const bool is_slip = fit.faults.front().from.has_value();
     return scale(fit).squaredNorm() +
            (is_slip ? 2.0 * std::log(static_cast<double>(fit.residual.size())) : 0.0);
   }
@@ -143,6 +142,15 @@ class ClockSearch {
            fit.misfit * std::pow(fit.misfit / before, left) < calcChiSquareLimit(fit.calcDegrees());
   }
 
+  /// Of the residual, by a delay of the whole recording; empty where that cannot be simulated.
+  VectorXd calcLateDerivative(const ClockedFit& fit) const {
+    std::vector<NuisanceSize> faults = fit.faults;
+    faults.push_back({"late"});
+    const ClockedFit with = linearizeClocked(recorded_, fit.point, faults);
+    const bool is_same = with.isGiven() && with.residual.size() == fit.residual.size();
+    return is_same ? VectorXd(with.jacobian.rightCols(1)) : VectorXd();
+  }
+
   /// With one slip more, at the best place; not given where none is worth it.
   ClockedFit addSlip(const ClockedFit& fit) const {
     const auto n = static_cast<double>(fit.residual.size());
@@ -150,19 +158,18 @@ class ClockSearch {
         static_cast<double>(fit.faults.size()) >= countMost(fit)) {
       return {};
     }
-    std::vector<ClockFault> faults = fit.faults;
-    faults.push_back({ClockFaultKind::kLate});
-    const ClockedFit with = linearizeClocked(recorded_, fit.point, faults);
-    if (!with.isGiven() || with.residual.size() != fit.residual.size()) {
+    const VectorXd late = calcLateDerivative(fit);
+    if (late.size() == 0) {
       return {};
     }
-    const SlipPlace place = scanSlips(fit.residual, fit.jacobian, with.jacobian.rightCols(1), fit.infos);
+    const SlipPlace place = scanSlips(fit.residual, fit.jacobian, late, fit.infos);
     const double left = fit.residual.squaredNorm() - place.gain;
     const double variance = is_unknown_ ? left / fit.calcDegrees() : 1.0;
     if (place.gain < 2.0 * std::log(n / kRareLevel) * variance) {
       return {};
     }
-    faults.back() = {ClockFaultKind::kSlip, place.from};
+    std::vector<NuisanceSize> faults = fit.faults;
+    faults.push_back({"late", 0.0, 0.0, place.from});
     return placeAnew(fitClock(recorded_, fit.point, faults));
   }
 
@@ -171,23 +178,21 @@ class ClockSearch {
     if (!fit.isGiven()) {
       return fit;
     }
-    std::vector<ClockFault> faults = fit.faults;
-    faults.push_back({ClockFaultKind::kLate});
-    const ClockedFit with = linearizeClocked(recorded_, fit.point, faults);
-    if (!with.isGiven() || with.residual.size() != fit.residual.size()) {
+    const VectorXd late = calcLateDerivative(fit);
+    if (late.size() == 0) {
       return fit;
     }
+    std::vector<NuisanceSize> faults = fit.faults;
     bool moved = false;
     for (std::size_t k = 0; k < fit.faults.size(); ++k) {
       const Index column = fit.point.size() + static_cast<Index>(k);
       MatrixXd others = fit.jacobian;
       others.col(column).setZero();
-      const VectorXd without = fit.residual + fit.jacobian.col(column) * fit.faults[k].size;
-      const double from = scanSlips(without, others, with.jacobian.rightCols(1), fit.infos).from;
+      const VectorXd without = fit.residual + fit.jacobian.col(column) * fit.faults[k].value;
+      const double from = scanSlips(without, others, late, fit.infos).from;
       moved = moved || from != fit.faults[k].from;
       faults[k].from = from;
     }
-    faults.pop_back();
     if (!moved) {
       return fit;
     }
@@ -196,47 +201,23 @@ class ClockSearch {
   }
 
   const RecordedSamples& recorded_;
-  bool is_unknown_ = false;
+  const bool is_unknown_;  // the size of noise
 };
 
 }  // namespace
 
-std::optional<ClockedMeasurement> findClockFaults(const RecordedSamples& recorded, const VectorXd& best,
-                                                  const SimulatorPosteriorOptions& options) {
+std::optional<NuisanceFit> findClockFaults(const RecordedSamples& recorded, const VectorXd& best) {
   constexpr double kReach = 10.0;  // standard deviations: no bound of the posterior's
   const ClockSearch search(recorded);
   const ClockedFit fit = search.find(best);
   if (!fit.isGiven()) {
     return std::nullopt;
   }
-  const VectorXd stddevs = search.calcStddevs(fit);
-  ClockedMeasurement found;
-  found.simulator = makeClockedSimulator(recorded, fit.faults, kReach * stddevs);
-  found.features = takeWithin(recorded, fit.faults);
-  VectorXd given(fit.point.size() + stddevs.size());
-  given.head(fit.point.size()) = fit.point;
-  for (std::size_t k = 0; k < fit.faults.size(); ++k) {
-    given[fit.point.size() + static_cast<Index>(k)] = fit.faults[k].size;
-  }
-  found.sampled =
-      found.simulator->sampleUnder(recorded.noise, found.features, recorded.known, given, options);
-  const PosteriorEstimate& posterior = found.sampled.estimate;
-  if (!posterior.isReliable() || !posterior.fit->isPlausible()) {
-    return std::nullopt;
-  }
-  found.faults = fit.faults;
-  const BoundedDraws& draws = posterior.estimate.draws;
-  for (std::size_t k = 0; k < found.faults.size(); ++k) {
-    const VectorXd own = draws.points.row(fit.point.size() + static_cast<Index>(k)).transpose();
-    ClockFault& fault = found.faults[k];
-    fault.size = draws.weights.dot(own) / draws.weights.sum();
-    fault.stddev =
-        std::sqrt(draws.weights.dot((own.array() - fault.size).square().matrix()) / draws.weights.sum());
-    if (std::abs(fault.size) < kRareDeviations * fault.stddev) {
-      return std::nullopt;
-    }
-  }
-  return found;
+  return NuisanceFit{makeClockedSimulator(recorded, fit.faults, kReach * search.calcStddevs(fit)),
+                     takeWithin(recorded, fit.faults),
+                     appendSizes(fit.point, fit.faults),
+                     {Notice::kClockFault, "clock", {"delay.", "clock."}, fit.faults},
+                     describeClock};
 }
 
 }  // namespace twinmap

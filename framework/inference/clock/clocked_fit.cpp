@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 namespace {
 
 /// How the stamps of a recording lead to true times.
-ClockedSimulator::Times makeTimes(const RecordedSamples& recorded, const std::vector<ClockFault>& faults) {
+ClockedSimulator::Times makeTimes(const RecordedSamples& recorded, const std::vector<NuisanceSize>& faults) {
   constexpr double kReach = 0.25;  // of a mean step: near enough for a parabola where samples are
   const VectorXd& stamps = recorded.layout.times;
   const auto steps = static_cast<double>(std::max<Index>(1, stamps.size() - 1));
@@ -26,46 +26,54 @@ ClockedSimulator::Times makeTimes(const RecordedSamples& recorded, const std::ve
 
 /// About what a step of least squares may change: an eighth of the recording's length, and what makes as much
 /// of it at the end.
-VectorXd makeHalfWidths(const RecordedSamples& recorded, const std::vector<ClockFault>& faults) {
+VectorXd makeHalfWidths(const RecordedSamples& recorded, const std::vector<NuisanceSize>& faults) {
   constexpr double kMost = 0.125;
   const double last = recorded.layout.times[recorded.layout.times.size() - 1];
   return VectorXd::NullaryExpr(static_cast<Index>(faults.size()), [&](Index k) {
-    return faults[static_cast<std::size_t>(k)].kind == ClockFaultKind::kRate ? kMost : kMost * last;
+    return isRate(faults[static_cast<std::size_t>(k)]) ? kMost : kMost * last;
   });
 }
 
-/// A point with its linear model, in half-widths.
+/// A point with its linear model, also in half-widths.
 struct Linearized {
+  ClockedFit fit;
   LocalMisfit local;
   VectorXd half_widths;
-  std::vector<FeatureInfo> infos;
 };
 
 Linearized linearize(const RecordedSamples& recorded, const VectorXd& point,
-                     const std::vector<ClockFault>& faults) {
+                     const std::vector<NuisanceSize>& faults) {
   const auto simulator = makeClockedSimulator(recorded, faults, makeHalfWidths(recorded, faults));
   const VectorXd features = takeWithin(recorded, faults);
   const MeasuredTrial trial = simulator->makeTrial(features, recorded.known);
   TrialMisfit own(trial);
-  VectorXd at(point.size() + static_cast<Index>(faults.size()));
-  at.head(point.size()) = point;
-  for (std::size_t k = 0; k < faults.size(); ++k) {
-    at[point.size() + static_cast<Index>(k)] = faults[k].size;
+  LocalMisfit local = own.linearize(appendSizes(point, faults));
+  const VectorXd half_widths = own.box.getHalfWidths();
+  ClockedFit fit{point, faults, local.residual, local.jacobian, local.misfit, {}};
+  for (Index k = point.size(); k < fit.jacobian.cols(); ++k) {
+    fit.jacobian.col(k) /= half_widths[k];
   }
-  Linearized made{own.linearize(at), own.box.getHalfWidths(), {}};
   const std::vector<FeatureInfo>& infos = trial.model->getExtractor().getInfos();
   for (const Index i : trial.model->getWhole().features) {
-    made.infos.push_back(infos[static_cast<std::size_t>(i)]);
+    fit.infos.push_back(infos[static_cast<std::size_t>(i)]);
   }
-  return made;
+  return {std::move(fit), std::move(local), half_widths};
 }
 
-ClockedFit toFit(const Linearized& at, const VectorXd& point, const std::vector<ClockFault>& faults) {
-  ClockedFit fit{point, faults, at.local.residual, at.local.jacobian, at.local.misfit, at.infos};
-  for (Index k = point.size(); k < fit.jacobian.cols(); ++k) {
-    fit.jacobian.col(k) /= at.half_widths[k];
+/// A step's share from a point on, within the bounds of the model's parameters.
+Linearized step(const RecordedSamples& recorded, const Linearized& from, const VectorXd& way) {
+  const Index u = from.fit.point.size();
+  VectorXd point = from.fit.point + way.head(u);
+  const std::vector<ParameterSpec> unknown = collectUnknown(recorded.experiment.model);
+  for (Index i = 0; i < u; ++i) {
+    const Bounds& bounds = unknown[static_cast<std::size_t>(i)].bounds;
+    point[i] = std::clamp(point[i], bounds.lower, bounds.upper);
   }
-  return fit;
+  std::vector<NuisanceSize> faults = from.fit.faults;
+  for (std::size_t k = 0; k < faults.size(); ++k) {
+    faults[k].value += way[u + static_cast<Index>(k)];
+  }
+  return linearize(recorded, point, faults);
 }
 
 }  // namespace
@@ -75,7 +83,7 @@ double ClockedFit::calcDegrees() const {
 }
 
 std::shared_ptr<const SimulatorRefiner> makeClockedSimulator(const RecordedSamples& recorded,
-                                                             const std::vector<ClockFault>& faults,
+                                                             const std::vector<NuisanceSize>& faults,
                                                              const VectorXd& half_widths) {
   const ModelSpec& model = recorded.experiment.model;
   const ClockedSimulator::Times times = makeTimes(recorded, faults);
@@ -87,13 +95,22 @@ std::shared_ptr<const SimulatorRefiner> makeClockedSimulator(const RecordedSampl
     ParameterSpec size;
     size.name.text = "clock." + std::to_string(k + 1);
     const double half = half_widths[static_cast<Index>(k)];
-    size.bounds = {faults[k].size - half, faults[k].size + half, {}};
+    size.bounds = {faults[k].value - half, faults[k].value + half, {}};
     experiment.model.nuisance.push_back(std::move(size));
   }
   return std::make_shared<const SimulatorRefiner>(experiment, recorded.layout, std::move(simulator));
 }
 
-VectorXd takeWithin(const RecordedSamples& recorded, const std::vector<ClockFault>& faults) {
+VectorXd appendSizes(const VectorXd& point, const std::vector<NuisanceSize>& faults) {
+  VectorXd all(point.size() + static_cast<Index>(faults.size()));
+  all.head(point.size()) = point;
+  for (std::size_t k = 0; k < faults.size(); ++k) {
+    all[point.size() + static_cast<Index>(k)] = faults[k].value;
+  }
+  return all;
+}
+
+VectorXd takeWithin(const RecordedSamples& recorded, const std::vector<NuisanceSize>& faults) {
   const ClockedSimulator::Times times = makeTimes(recorded, faults);
   const FeatureExtractor extractor(recorded.experiment.features, recorded.layout);
   VectorXd features = recorded.features;
@@ -106,19 +123,18 @@ VectorXd takeWithin(const RecordedSamples& recorded, const std::vector<ClockFaul
 }
 
 ClockedFit linearizeClocked(const RecordedSamples& recorded, const VectorXd& point,
-                            const std::vector<ClockFault>& faults) {
+                            const std::vector<NuisanceSize>& faults) {
   const Linearized at = linearize(recorded, point, faults);
-  return at.local.status.ok ? toFit(at, point, faults) : ClockedFit{};
+  return at.local.status.ok ? at.fit : ClockedFit{};
 }
 
 ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
-                    const std::vector<ClockFault>& faults) {
-  ClockedFit fit{point, faults, {}, {}, 0.0, {}};
+                    const std::vector<NuisanceSize>& faults) {
   Linearized at = linearize(recorded, point, faults);
   if (!at.local.status.ok) {
     return {};
   }
-  for (int step = 0; step < kFewIterations; ++step) {
+  for (int iteration = 0; iteration < kFewIterations; ++iteration) {
     const Eigen::MatrixXd lower = linalg::calcCholesky(at.local.calcHessian()).lower;
     const VectorXd way = linalg::solveCholesky(lower, at.local.descent).cwiseProduct(at.half_widths);
     const double before = at.local.misfit;
@@ -127,19 +143,8 @@ ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
     }
     double share = 1.0;
     for (int halving = 0; halving < kFewIterations; ++halving, share *= 0.5) {
-      ClockedFit next = fit;
-      next.point += share * way.head(point.size());
-      const std::vector<ParameterSpec> unknown = collectUnknown(recorded.experiment.model);
-      for (Index i = 0; i < point.size(); ++i) {
-        const Bounds& bounds = unknown[static_cast<std::size_t>(i)].bounds;
-        next.point[i] = std::clamp(next.point[i], bounds.lower, bounds.upper);
-      }
-      for (std::size_t k = 0; k < faults.size(); ++k) {
-        next.faults[k].size += share * way[point.size() + static_cast<Index>(k)];
-      }
-      Linearized there = linearize(recorded, next.point, next.faults);
+      Linearized there = step(recorded, at, share * way);
       if (there.local.status.ok && there.local.misfit < at.local.misfit) {
-        fit = std::move(next);
         at = std::move(there);
         break;
       }
@@ -150,7 +155,7 @@ ClockedFit fitClock(const RecordedSamples& recorded, const VectorXd& point,
       break;
     }
   }
-  return toFit(at, fit.point, fit.faults);
+  return at.fit;
 }
 
 }  // namespace twinmap

@@ -41,7 +41,7 @@ ClockedSimulator::ClockedSimulator(std::unique_ptr<Simulator> inner, Times times
     };
     nodes_.push_back({find(time - times_.reach), find(time), find(time + times_.reach)});
     for (Index k = 0; k < shapes_.cols(); ++k) {
-      shapes_(i, k) = times_.faults[static_cast<std::size_t>(k)].calcShape(times_.stamps[i]);
+      shapes_(i, k) = calcShape(times_.faults[static_cast<std::size_t>(k)], times_.stamps[i]);
     }
   }
 }
@@ -56,7 +56,7 @@ MatrixXd ClockedSimulator::takeInner(const Ref<const MatrixXd>& parameters) cons
 double ClockedSimulator::calcMore(Index time, const Ref<const VectorXd>& sizes) const {
   double more = 0.0;
   for (Index k = 0; k < sizes.size(); ++k) {
-    more += shapes_(time, k) * (sizes[k] - times_.faults[static_cast<std::size_t>(k)].size);
+    more += shapes_(time, k) * (sizes[k] - times_.faults[static_cast<std::size_t>(k)].value);
   }
   return more;
 }

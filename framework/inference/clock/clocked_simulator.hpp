@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "framework/inference/clock_fault.hpp"
+#include "framework/inference/clock/clock_fault.hpp"
 #include "framework/simulation/simulator.hpp"
 
 namespace twinmap {
@@ -19,7 +19,7 @@ class ClockedSimulator final : public Simulator {
   /// The times (s) that the inner simulator needs.
   struct Times {
     Eigen::VectorXd stamps;  ///< increasing
-    std::vector<ClockFault> faults;
+    std::vector<NuisanceSize> faults;
     double reach = 0.0;     ///< s
     double duration = 0.0;  ///< s
 

@@ -41,12 +41,12 @@ constexpr int kDrawsAlone = 128;
 /// of half of these, means are known to a tenth of a standard deviation.
 constexpr int kDrawsOfMany = 256;
 
-/// Without the sizes of faults of clocks, whose bounds are those of a search.
-void leaveClockBounds(const PosteriorProblem& problem, const std::vector<ExplainedRecording>& alone,
-                      std::vector<std::string>& beyond) {
+/// Without the sizes of the recordings' nuisance, whose bounds are those of a search.
+void leaveNuisanceBounds(const PosteriorProblem& problem, const std::vector<ExplainedRecording>& alone,
+                         std::vector<std::string>& beyond) {
   for (std::size_t k = 0; k < alone.size(); ++k) {
     const std::vector<Index>& unknown = problem.trials[k].unknown;
-    for (std::size_t j = unknown.size() - alone[k].inferred.clock_faults.size(); j < unknown.size(); ++j) {
+    for (std::size_t j = unknown.size() - alone[k].inferred.countSizes(); j < unknown.size(); ++j) {
       const std::string& size = problem.unknown[static_cast<std::size_t>(unknown[j])].name.text;
       beyond.erase(std::remove(beyond.begin(), beyond.end(), size), beyond.end());
     }
@@ -135,14 +135,12 @@ void requireSameParameters(const std::vector<ParameterSpec>& parameters,
 
 std::vector<std::string> listRecordingFaults(const std::vector<RecordingInference>& alone) {
   std::vector<std::string> listed;
-  for (const Notice fault : {Notice::kOutliers, Notice::kClockFault, Notice::kNoiseLarger,
-                             Notice::kNoiseSmaller, Notice::kNoiseColoured, Notice::kSensorOffset}) {
-    const char* name = getNotice(fault).name;
-    if (std::any_of(alone.begin(), alone.end(), [&](const RecordingInference& one) {
-          const std::vector<std::string> statuses = listStatuses(one.inferred);
-          return std::find(statuses.begin(), statuses.end(), name) != statuses.end();
+  for (const NoticeText& notice : listNotices()) {
+    if (notice.concern != Concern::kOther &&
+        std::any_of(alone.begin(), alone.end(), [&](const RecordingInference& one) {
+          return hasStatus(listStatuses(one.inferred), notice.notice);
         })) {
-      listed.emplace_back(name);
+      listed.emplace_back(notice.name);
     }
   }
   return listed;
@@ -330,7 +328,7 @@ JointInference JointInferrer::infer(const std::vector<Recording>& recordings) co
       testAgreement(inferred.joint.misfit, separate, linearizeParts(problem, inferred.joint.best), problem,
                     inferred.joint.best, options_.seed);
   inferred.together = describeTogether(members_.front().reader->getExperiment(), problem, inferred.joint);
-  leaveClockBounds(problem, alone, inferred.together.posterior->fit->beyond);
+  leaveNuisanceBounds(problem, alone, inferred.together.posterior->fit->beyond);
   inferred.contradictions = findContradictions(inferred.alone, shared);
   nameNoise(alone, inferred);
   inferred.scatter = combineRecordings(inferred.alone, getParameters());

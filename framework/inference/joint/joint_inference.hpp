@@ -48,14 +48,13 @@ struct JointInference {
   bool disagrees() const { return agreement && agreement->p_value < kMismatchLevel; }
 };
 
-/// Names of what one or several recordings have that their files do not state: "outliers", "clock_fault",
-/// "noise_larger", "noise_smaller", "noise_coloured", "sensor_offset". The joint estimate is without it.
+/// Names of what one or several recordings have that their files do not state: statuses of a sensor or a
+/// nuisance (Concern). The joint estimate is without it.
 std::vector<std::string> listRecordingFaults(const std::vector<RecordingInference>& alone);
 
-/// Names of all that is to be said against the joint estimate, the most severe first: "not_simulated",
-/// "model_mismatch" (of a recording alone), "missing_term", "at_bounds", "trials_disagree" (below
-/// kMismatchLevel), listRecordingFaults(), "unreliable", "multimodal", "uninformative"; {"ok"} where nothing
-/// is. Of the first `parameters`, the machine's.
+/// Names of all that is to be said against the joint estimate (listNotices), the most severe first: of a
+/// recording alone "model_mismatch" and listRecordingFaults(); "trials_disagree" below kMismatchLevel; {"ok"}
+/// where nothing is. Of the first `parameters`, the machine's.
 std::vector<std::string> listStatuses(const JointInference& inferred, Eigen::Index parameters);
 
 /// Infers one machine from several recordings together, each with an initial state, an offset ... (nuisance
@@ -75,9 +74,9 @@ class JointInferrer {
   const MeasurementReader& getReader(const std::string& trial) const { return *find(trial).reader; }
   std::vector<std::string> listTrials() const;
 
-  /// Of recordings as they are explained alone (explainRecording): with the faults of their sensors and
-  /// clocks. Cost: that of DirectInference::infer() for each recording, and two simulations with derivatives
-  /// of each recording and joint draw.
+  /// Of recordings as they are explained alone (explainRecording): with the faults of their sensors and their
+  /// nuisance. Cost: that of DirectInference::infer() for each recording, and two simulations with
+  /// derivatives of each recording and joint draw.
   JointInference infer(const std::vector<Recording>& recordings) const;
 
   /// What becomes of a fit that noise does not explain: it is the answer, or where a further search begins.

@@ -113,9 +113,11 @@ InferredMeasurement DirectInference::infer(const Eigen::VectorXd& features, cons
   return inferred;
 }
 
-bool DirectInference::tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
-                               InferredMeasurement& inferred) const {
-  return twinmap::tryClock(setup_, found, known, options_, inferred);
+void DirectInference::tryNuisance(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                                  InferredMeasurement& inferred) const {
+  ExplainedRecording explained{setup_, found, known, {}, {}, std::move(inferred)};
+  twinmap::tryNuisance(options_, explained);
+  inferred = std::move(explained.inferred);
 }
 
 void DirectInference::describe(InferredMeasurement& inferred) const {

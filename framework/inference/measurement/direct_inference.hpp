@@ -30,9 +30,9 @@ class DirectInference final : public MeasurementInference {
   /// Cost: that of samplePosterior().
   InferredMeasurement infer(const Eigen::VectorXd& features, const Eigen::VectorXd& known) override;
 
-  /// twinmap::tryClock() of its experiment.
-  bool tryClock(const AvailableFeatures& found, const Eigen::VectorXd& known,
-                InferredMeasurement& inferred) const;
+  /// twinmap::tryNuisance() of its experiment.
+  void tryNuisance(const AvailableFeatures& found, const Eigen::VectorXd& known,
+                   InferredMeasurement& inferred) const;
 
  private:
   /// What infers with the times and the excitation of a table (MeasurementReader::follow); null where they

@@ -1,6 +1,7 @@
 #include "framework/inference/measurement/explained_recording.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "framework/base/log/notice.hpp"
@@ -41,27 +42,59 @@ std::vector<std::string> listMeasured(const ModelSpec& model) {
   return names;
 }
 
-std::optional<ClockedMeasurement> findClock(const RecordingSetup& setup, const AvailableFeatures& found,
-                                            const VectorXd& known, const SimulatorPosteriorOptions& options,
-                                            const InferredMeasurement& inferred) {
-  const ExperimentSpec& experiment = setup.reader->getExperiment();
-  const SimulatorFit* fit = findFit(inferred);
-  if (!isMismatch(listStatuses(inferred)) || fit == nullptr || found.stated.isGiven() ||
-      experiment.model.source || !areSamples(experiment.features) || !setup.simulator->samplesFast() ||
-      static_cast<Index>(found.available.size()) < kFewestTested) {
-    return std::nullopt;
-  }
-  const SearchStage stage = SearchStage::supposing("does a fault of the clock explain it");
-  return findClockFaults({experiment, setup.reader->getLayout(), found.features, known,
-                          setup.simulator->describeNoise(found.clipped)},
-                         fit->best, options);
+/// A kind of nuisance, and what is asked while it is looked for.
+struct NuisanceKind {
+  NuisanceSearch* find;
+  const char* question;
+};
+/// In the order in which they are tried.
+constexpr NuisanceKind kNuisances[] = {{findClockFaults, "does a fault of the clock explain it"}};
+
+void take(SampledMeasurement sampled, ExplainedRecording& explained) {
+  explained.noise = std::move(sampled.noise);
+  explained.posterior = std::move(sampled.posterior);
+  explained.inferred.posterior = std::move(sampled.estimate);
+  explained.inferred.ridges =
+      explained.setup.simulator->findRidges(*explained.inferred.posterior, explained.known);
 }
 
-void takeClock(const ClockedMeasurement& clocked, const VectorXd& known, InferredMeasurement& inferred) {
-  inferred.trust.reset();
-  inferred.posterior = clocked.sampled.estimate;
-  inferred.clock_faults = clocked.faults;
-  inferred.ridges = clocked.simulator->findRidges(*inferred.posterior, known);
+/// As drawn, the last of what is unknown; false where one is not significant.
+bool takeSizes(const BoundedDraws& draws, std::vector<NuisanceSize>& sizes) {
+  Index row = draws.points.rows() - static_cast<Index>(sizes.size());
+  for (NuisanceSize& size : sizes) {
+    const VectorXd own = draws.points.row(row++).transpose();
+    size.value = draws.weights.dot(own) / draws.weights.sum();
+    size.stddev =
+        std::sqrt(draws.weights.dot((own.array() - size.value).square().matrix()) / draws.weights.sum());
+    if (std::abs(size.value) < kRareDeviations * size.stddev) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether one does; then it is what was inferred.
+bool explainBy(const NuisanceKind& kind, const RecordedSamples& recorded,
+               const SimulatorPosteriorOptions& options, ExplainedRecording& explained) {
+  const SearchStage stage = SearchStage::supposing(kind.question);
+  std::optional<NuisanceFit> fit = kind.find(recorded, explained.inferred.posterior->fit->best);
+  if (!fit) {
+    return false;
+  }
+  SampledMeasurement sampled =
+      fit->simulator->sampleUnder(recorded.noise, fit->features, recorded.known, fit->point, options);
+  const PosteriorEstimate& posterior = sampled.estimate;
+  if (!posterior.isReliable() || !posterior.fit->isPlausible() ||
+      !takeSizes(posterior.estimate.draws, fit->nuisance.sizes)) {
+    return false;
+  }
+  fit->nuisance.text = fit->describe(fit->nuisance.sizes);
+  explained.inferred.trust.reset();
+  explained.inferred.nuisance = std::move(fit->nuisance);
+  explained.setup.simulator = std::move(fit->simulator);
+  explained.found.features = std::move(fit->features);
+  take(std::move(sampled), explained);
+  return true;
 }
 
 /// One recording, from one hypothesis to the next.
@@ -80,14 +113,14 @@ class Explaining {
       upd().fault = explainByBounds(getReader(), getSimulator(), explained_.found, explained_.known,
                                     *stated.estimate.fit);
       if (!upd().fault.empty()) {
-        take(std::move(stated));
+        take(std::move(stated), explained_);
         return std::move(explained_);
       }
-      take(explainByNoise(std::move(stated)));
+      take(explainByNoise(std::move(stated)), explained_);
       tryWithoutSpikes();
       tryWithoutAlternation();
     }
-    if (!tryClock()) {
+    if (!tryNuisance(options_, explained_)) {
       nameRest();
     }
     return std::move(explained_);
@@ -128,13 +161,6 @@ class Explaining {
                                           getSimulator().describeNoise(found.clipped), listGiven(), options_);
   }
 
-  void take(SampledMeasurement sampled) {
-    explained_.noise = std::move(sampled.noise);
-    explained_.posterior = std::move(sampled.posterior);
-    upd().posterior = std::move(sampled.estimate);
-    upd().ridges = getSimulator().findRidges(*upd().posterior, explained_.known);
-  }
-
   /// Whether other hypotheses are worth a try that look at samples.
   bool isUnexplained() const {
     return getFit().isSimulated() && !getFit().isPlausible() &&
@@ -162,7 +188,7 @@ class Explaining {
     if (own.isSimulated() && (own.isPlausible() || own.chi_square < kClearlyLess * getFit().chi_square)) {
       own.outliers.insert(own.outliers.end(), spiked.said.begin(), spiked.said.end());
       own.outlier_features.insert(own.outlier_features.end(), spiked.features.begin(), spiked.features.end());
-      take(std::move(other));
+      take(std::move(other), explained_);
       explained_.found = std::move(without);
     }
   }
@@ -180,24 +206,10 @@ class Explaining {
     even.response += alternation.shift;
     SampledMeasurement other = sample(even);
     if (other.estimate.fit->isPlausible()) {
-      take(std::move(other));
+      take(std::move(other), explained_);
       upd().remarks = std::move(alternation.said);
       explained_.found = std::move(even);
     }
-  }
-
-  bool tryClock() {
-    std::optional<ClockedMeasurement> clocked =
-        findClock(explained_.setup, explained_.found, explained_.known, options_, getInferred());
-    if (!clocked) {
-      return false;
-    }
-    takeClock(*clocked, explained_.known, upd());
-    explained_.noise = std::move(clocked->sampled.noise);
-    explained_.posterior = std::move(clocked->sampled.posterior);
-    explained_.setup.simulator = std::move(clocked->simulator);
-    explained_.found.features = std::move(clocked->features);
-    return true;
   }
 
   /// The simple fault of the recording that explains a gross misfit, or "".
@@ -218,10 +230,9 @@ class Explaining {
 
   /// What speaks against the model, where it explains nothing and no fault of the recording does.
   std::vector<std::string> listAgainst() const {
-    const std::string status = listStatuses(getInferred()).front();
-    const bool explains_nothing = status == getNotice(Notice::kNotSimulated).name ||
-                                  status == getNotice(Notice::kModelMismatch).name ||
-                                  status == getNotice(Notice::kUnreliable).name;
+    const Notice status = getStatus(listStatuses(getInferred()).front()).notice;
+    const bool explains_nothing =
+        status == Notice::kNotSimulated || status == Notice::kModelMismatch || status == Notice::kUnreliable;
     if (!explains_nothing || !getInferred().fault.empty()) {
       return {};
     }
@@ -299,7 +310,7 @@ ExplainedRecording explainRecording(const RecordingSetup& setup, AvailableFeatur
 
 void nameUnstatedNoise(ExplainedRecording& explained) {
   InferredMeasurement& inferred = explained.inferred;
-  if (inferred.fault.empty() && inferred.clock_faults.empty()) {
+  if (inferred.fault.empty() && !inferred.nuisance) {
     const std::vector<std::string> noisy =
         describeUnstatedNoise(*explained.setup.reader, *explained.setup.simulator, explained.found,
                               explained.known, *inferred.posterior);
@@ -307,13 +318,20 @@ void nameUnstatedNoise(ExplainedRecording& explained) {
   }
 }
 
-bool tryClock(const RecordingSetup& setup, const AvailableFeatures& found, const VectorXd& known,
-              const SimulatorPosteriorOptions& options, InferredMeasurement& inferred) {
-  const std::optional<ClockedMeasurement> clocked = findClock(setup, found, known, options, inferred);
-  if (clocked) {
-    takeClock(*clocked, known, inferred);
+bool tryNuisance(const SimulatorPosteriorOptions& options, ExplainedRecording& explained) {
+  const ExperimentSpec& experiment = explained.setup.reader->getExperiment();
+  const AvailableFeatures& found = explained.found;
+  if (!isMismatch(listStatuses(explained.inferred)) || findFit(explained.inferred) == nullptr ||
+      found.stated.isGiven() || experiment.model.source || !areSamples(experiment.features) ||
+      !explained.setup.simulator->samplesFast() ||
+      static_cast<Index>(found.available.size()) < kFewestTested) {
+    return false;
   }
-  return clocked.has_value();
+  const NoiseHypothesis noise = explained.setup.simulator->describeNoise(found.clipped);
+  const RecordedSamples recorded{experiment, explained.setup.reader->getLayout(), found.features,
+                                 explained.known, noise};
+  return std::any_of(std::begin(kNuisances), std::end(kNuisances),
+                     [&](const NuisanceKind& kind) { return explainBy(kind, recorded, options, explained); });
 }
 
 }  // namespace twinmap

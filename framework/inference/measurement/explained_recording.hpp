@@ -32,9 +32,9 @@ UnexplainedRecording readUnexplained(std::shared_ptr<const MeasurementReader> re
 AvailableFeatures readFeatures(const MeasurementReader& reader, const Table& table,
                                std::optional<double> start);
 
-/// A recording, or a window of one, with the faults of its sensors and its clock that explain it.
+/// A recording, or a window of one, with the faults of its sensors and the nuisance that explain it.
 struct ExplainedRecording {
-  RecordingSetup setup;          ///< faults of its clock are nuisance parameters of the simulator
+  RecordingSetup setup;          ///< of which the nuisance has sizes behind the model's unknown
   AvailableFeatures found;       ///< without its spikes
   Eigen::VectorXd known;         ///< of the inputs
   NoiseHypothesis noise;         ///< with the faults of its sensors
@@ -50,7 +50,7 @@ struct ExplainedRecording {
 ///   without its spikes (findSpikedFeatures), if that explains it or leaves less than half of the misfit
 ///   other hypotheses of the noise (SimulatorSampler::samplePosterior)
 ///   without what every other sample is off by (findAlternation)
-///   a clock with faults (findClockFaults)
+///   a nuisance of its own, as a clock with faults (NuisanceSearch)
 /// Else the simple fault that explains a gross misfit, and what speaks against the model, are named. What is
 /// unknown of the excitation is supposed (makeOwnSimulator). found: readFeatures() of the table. lead:
 /// the machine's parameters, to search from as well.
@@ -62,9 +62,8 @@ ExplainedRecording explainRecording(const RecordingSetup& setup, AvailableFeatur
 /// Remarks noise of an excitation that was not stated and may be what is left (describeUnstatedNoise).
 void nameUnstatedNoise(ExplainedRecording& explained);
 
-/// Whether faults of the recorder's clock explain a model_mismatch (findClockFaults); then they are what was
+/// Whether a nuisance of the recording explains a model_mismatch (NuisanceSearch); then it is what was
 /// inferred, whose posterior is the simulator's.
-bool tryClock(const RecordingSetup& setup, const AvailableFeatures& found, const Eigen::VectorXd& known,
-              const SimulatorPosteriorOptions& options, InferredMeasurement& inferred);
+bool tryNuisance(const SimulatorPosteriorOptions& options, ExplainedRecording& explained);
 
 }  // namespace twinmap

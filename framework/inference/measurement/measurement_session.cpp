@@ -91,7 +91,7 @@ InferredMeasurement MeasurementSession::infer(const Table& table, std::optional<
     return getDirect().infer(table, start, known);
   }
   InferredMeasurement inferred = inferResponse(table, start, found.response, found.features, known);
-  getDirect().tryClock(found, known, inferred);
+  getDirect().tryNuisance(found, known, inferred);
   return inferred;
 }
 

@@ -12,12 +12,12 @@
 #include "framework/data/measurement/time_series.hpp"
 #include "framework/data/noise/feature_noise.hpp"
 #include "framework/estimation/levels.hpp"
-#include "framework/estimation/segments/segmented_misfit.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
 #include "framework/inference/derived_values.hpp"
 #include "framework/inference/measurement/unknown_excitation.hpp"
 #include "framework/inference/refiner.hpp"
 #include "framework/inference/segments/segment_faults.hpp"
+#include "framework/inference/segments/segmented_misfit.hpp"
 #include "framework/inference/tolerances/tolerances.hpp"
 #include "framework/models/make_simulator.hpp"
 #include "framework/simulation/model_numbers.hpp"
@@ -157,7 +157,9 @@ std::vector<FeatureInfo> listSamples(const PreparedSegments& prepared) {
 PosteriorProblem makeProblem(const PreparedSegments& prepared) {
   const std::vector<ParameterSpec>& unknown = prepared.recording->unknown;
   MeasuredTrial trial{prepared.simulator.get(), nullptr, {}, {}, listIndices(unknown.size())};
-  trial.segments = prepared.recording;
+  trial.make_misfit = [simulator = trial.simulator, recording = prepared.recording] {
+    return std::make_unique<SegmentedMisfit>(*simulator, *recording);
+  };
   return {unknown, prepared.experiment.model.priors, {trial}, static_cast<Index>(unknown.size())};
 }
 

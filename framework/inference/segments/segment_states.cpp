@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "framework/estimation/levels.hpp"
-#include "framework/estimation/segments/segmented_recording.hpp"
 #include "framework/experiment/model/parameter_box.hpp"
+#include "framework/inference/segments/segmented_misfit.hpp"
 #include "framework/inference/start_readings.hpp"
 
 namespace twinmap {

@@ -203,13 +203,10 @@ Json toJson(const NoiseReport& report) {
   return json;
 }
 
-Json toJson(const ClockFault& fault) {
-  if (fault.kind == ClockFaultKind::kRate) {
-    return {{"rate", fault.size}, {"sd", fault.stddev}};
-  }
-  Json json{{"late", fault.size}, {"sd", fault.stddev}};
-  if (fault.kind == ClockFaultKind::kSlip) {
-    json["from"] = fault.from;
+Json toJson(const NuisanceSize& size) {
+  Json json{{size.name, size.value}, {"sd", size.stddev}};
+  if (size.from) {
+    json["from"] = *size.from;
   }
   return json;
 }
@@ -225,8 +222,8 @@ void addRecording(const InferredMeasurement& inferred, Json& json) {
   if (!inferred.left_out.empty()) {
     json["left_out"] = inferred.left_out;
   }
-  for (const ClockFault& fault : inferred.clock_faults) {
-    json["clock"].push_back(toJson(fault));
+  for (std::size_t k = 0; k < inferred.countSizes(); ++k) {
+    json[inferred.nuisance->kind].push_back(toJson(inferred.nuisance->sizes[k]));
   }
   if (!inferred.posterior || !inferred.posterior->fit) {
     return;

@@ -11,8 +11,6 @@
 
 namespace twinmap {
 
-bool hasStatus(const std::vector<std::string>& statuses, Notice notice);
-
 /// Whether the remedy of a status goes against that of another beside it, or is the same in other words.
 /// Bounds are not to be widened where they are to exclude, nor twice.
 bool isAdvisedElse(const std::string& status, const std::vector<std::string>& statuses);
@@ -38,7 +36,7 @@ std::string describeTrust(const InferredMeasurement& inferred, const std::vector
 
 using LabelledMeasurements = std::vector<std::pair<std::string, const InferredMeasurement*>>;
 
-/// What a status of sensors or clocks (listRecordingFaults) says of each recording that has it, of the first
+/// What a status of a recording (listRecordingFaults) says of each recording that has it, of the first
 /// four of many. Then what to do.
 std::string explainFaults(const std::string& status, const LabelledMeasurements& recordings);
 

@@ -252,12 +252,13 @@ std::string explainOutliers(const std::vector<std::string>& outliers) {
 }
 
 /// With the term of the model that would explain the recording as well.
-std::string explainClock(const InferredMeasurement& inferred) {
+std::string explainNuisance(const InferredMeasurement& inferred) {
+  const RecordingNuisance& nuisance = *inferred.nuisance;
   const MissingTerm* term = inferred.findMissing();
-  const bool other = term != nullptr && term->share > kMostOfMisfit && !term->isOfTime();
+  const bool other = term != nullptr && term->share > kMostOfMisfit && !nuisance.isAlike(term->term);
   return explainNotice(
-      Notice::kClockFault,
-      fmt::format("{}{}", fmt::join(describe(inferred.clock_faults), "; "),
+      nuisance.notice,
+      fmt::format("{}{}", nuisance.text,
                   other ? fmt::format(", or the model lacks {} ({}), which explains {:.0f} % of the misfit",
                                       term->term, term->meaning, 100.0 * term->share)
                         : ""));
@@ -319,46 +320,40 @@ std::string explainDisagreement(const std::vector<ScatterEstimate>& scatter,
 std::string explainStatus(const std::string& status, const InferredMeasurement& inferred,
                           const Estimate& estimate, const std::vector<ParameterSpec>& parameters,
                           const std::vector<FeatureInfo>& features) {
-  const auto is = [&](Notice notice) { return status == getNotice(notice).name; };
-  if (is(Notice::kModelMismatch)) {
-    return explainMismatch(inferred, parameters, features);
+  const NoticeText& said = getStatus(status);
+  if (said.concern == Concern::kNuisance) {
+    return explainNuisance(inferred);
   }
-  if (is(Notice::kMissingTerm)) {
-    return explainMissingTerm(*inferred.findMissing(), parameters);
+  switch (said.notice) {
+    case Notice::kModelMismatch:
+      return explainMismatch(inferred, parameters, features);
+    case Notice::kMissingTerm:
+      return explainMissingTerm(*inferred.findMissing(), parameters);
+    case Notice::kOutsideTraining:
+      return explainNotice(Notice::kOutsideTraining, inferred.trust->distance);
+    case Notice::kAtBounds:
+      return explainAtBounds(inferred, estimate, parameters);
+    case Notice::kUninformative:
+      return explainUninformative(inferred, estimate, parameters);
+    case Notice::kOutliers:
+      return explainOutliers(inferred.posterior->fit->outliers);
+    case Notice::kNoiseLarger:
+    case Notice::kNoiseSmaller:
+      return explainNotice(said.notice, inferred.posterior->fit->getNoiseFactor());
+    case Notice::kNoiseColoured:
+    case Notice::kSensorOffset:
+      return explainNoise(inferred.posterior->fit->noise, said.notice == Notice::kSensorOffset);
+    case Notice::kUncalibrated:
+      return explainUncalibrated(inferred);
+    case Notice::kTrialsDisagree:
+      return explainDisagreement(inferred.scatter, parameters);
+    case Notice::kPosteriorUncalibrated:
+      return explainNotice(Notice::kPosteriorUncalibrated, inferred.posterior->doubt);
+    case Notice::kNotSimulated:
+      return explainNotice(Notice::kNotSimulated, inferred.posterior->message);
+    default:
+      return "";
   }
-  if (is(Notice::kOutsideTraining)) {
-    return explainNotice(Notice::kOutsideTraining, inferred.trust->distance);
-  }
-  if (is(Notice::kAtBounds)) {
-    return explainAtBounds(inferred, estimate, parameters);
-  }
-  if (is(Notice::kUninformative)) {
-    return explainUninformative(inferred, estimate, parameters);
-  }
-  if (is(Notice::kOutliers)) {
-    return explainOutliers(inferred.posterior->fit->outliers);
-  }
-  if (is(Notice::kClockFault)) {
-    return explainClock(inferred);
-  }
-  for (const Notice notice : {Notice::kNoiseLarger, Notice::kNoiseSmaller}) {
-    if (is(notice)) {
-      return explainNotice(notice, inferred.posterior->fit->getNoiseFactor());
-    }
-  }
-  if (is(Notice::kNoiseColoured) || is(Notice::kSensorOffset)) {
-    return explainNoise(inferred.posterior->fit->noise, is(Notice::kSensorOffset));
-  }
-  if (is(Notice::kUncalibrated)) {
-    return explainUncalibrated(inferred);
-  }
-  if (is(Notice::kTrialsDisagree)) {
-    return explainDisagreement(inferred.scatter, parameters);
-  }
-  if (is(Notice::kPosteriorUncalibrated)) {
-    return explainNotice(Notice::kPosteriorUncalibrated, inferred.posterior->doubt);
-  }
-  return is(Notice::kNotSimulated) ? explainNotice(Notice::kNotSimulated, inferred.posterior->message) : "";
 }
 
 /// The lines that say what happened alone: what follows from a misfit is not mended by itself.
@@ -371,21 +366,19 @@ std::string dropRemedies(const std::string& explained) {
   return text;
 }
 
-/// Whether the residual is tested with noise, spikes or a clock other than stated.
+/// Whether the residual is tested with noise, spikes or a nuisance other than stated.
 bool isOtherThanStated(const InferredMeasurement& inferred, const SimulatorFit& fit) {
   return !fit.outliers.empty() || fit.getNoiseFactor() != 1.0 || fit.isColoured() || fit.hasOffset() ||
-         !inferred.clock_faults.empty();
+         inferred.nuisance.has_value();
 }
 
 /// "with that " of what the statuses say of the noise, or that it is another.
 const char* describeCondition(const InferredMeasurement& inferred, const std::vector<std::string>& statuses) {
-  constexpr Notice kSaid[] = {Notice::kOutliers,     Notice::kClockFault,    Notice::kNoiseLarger,
-                              Notice::kNoiseSmaller, Notice::kNoiseColoured, Notice::kSensorOffset};
   if (!isOtherThanStated(inferred, *inferred.posterior->fit)) {
     return "";
   }
-  return std::any_of(std::begin(kSaid), std::end(kSaid),
-                     [&](Notice notice) { return hasStatus(statuses, notice); })
+  return std::any_of(statuses.begin(), statuses.end(),
+                     [](const std::string& status) { return getStatus(status).concern != Concern::kOther; })
              ? "with that "
              : "with other noise than stated ";
 }

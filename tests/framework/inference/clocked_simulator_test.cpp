@@ -40,10 +40,8 @@ class Sine final : public Simulator {
   ResponseLayout layout_;
 };
 
-const ClockedSimulator::Times kClock{VectorXd::LinSpaced(30, 0.1, 3.0),
-                                     {{ClockFaultKind::kLate, 0.0, 0.02}, {ClockFaultKind::kSlip, 1.5, 0.05}},
-                                     0.025,
-                                     3.0};
+const ClockedSimulator::Times kClock{
+    VectorXd::LinSpaced(30, 0.1, 3.0), {{"late", 0.02}, {"late", 0.05, 0.0, 1.5}}, 0.025, 3.0};
 
 ClockedSimulator makeClocked() {
   return {std::make_unique<Sine>(kClock.listAll()), kClock, 1};
@@ -91,15 +89,16 @@ TEST(ClockedSimulator, KnowsWhichStampsCannotBeSimulated) {
 }
 
 TEST(ClockFault, IsSaidInWords) {
-  const ClockFault late{ClockFaultKind::kLate, 0.0, 0.02, 1e-4},
-      slow{ClockFaultKind::kRate, 0.0, -0.003, 1e-5}, slip{ClockFaultKind::kSlip, 15.28, 0.0024, 1e-4},
-      back{ClockFaultKind::kSlip, 3.5, -0.001, 1e-4};
-  using Said = std::vector<std::string>;
-  EXPECT_EQ(describe({late}), Said{"the record is 20 ms late (sd 0.1 ms)"});
-  EXPECT_EQ(describe({slow}), Said{"the clock runs 0.299 % slow (sd 0.001 %)"});
-  EXPECT_EQ(describe({slip}), Said{"from t = 15.28 s on the record is 2.4 ms late (sd 0.1 ms)"});
-  EXPECT_EQ(describe({slip, back}), (Said{"from t = 3.5 s on the record is 1 ms early (sd 0.1 ms)",
-                                          "from t = 15.28 s on it is 2.4 ms later (sd 0.1 ms)"}));
+  const NuisanceSize late{"late", 0.02, 1e-4}, slow{"rate", -0.003, 1e-5}, slip{"late", 0.0024, 1e-4, 15.28},
+      back{"late", -0.001, 1e-4, 3.5};
+  EXPECT_EQ(describeClock({late}), "the record is 20 ms late (sd 0.1 ms)");
+  EXPECT_EQ(describeClock({slow}), "the clock runs 0.299 % slow (sd 0.001 %)");
+  EXPECT_EQ(describeClock({slip}), "from t = 15.28 s on the record is 2.4 ms late (sd 0.1 ms)");
+  EXPECT_EQ(describeClock({slip, back}),
+            "from t = 3.5 s on the record is 1 ms early (sd 0.1 ms); from t = 15.28 s on it is 2.4 ms later "
+            "(sd 0.1 ms)");
+  EXPECT_EQ(describeClock({late, slow}),
+            "the record is 20 ms late (sd 0.1 ms); the clock runs 0.299 % slow (sd 0.001 %)");
 }
 
 }  // namespace

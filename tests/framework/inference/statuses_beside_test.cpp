@@ -130,7 +130,7 @@ Causes listOfPosteriors() {
            [](InferredMeasurement& inferred) { inferred.posterior->fit->test.chi_square_p = 0.0; }},
           {"at_bounds", [](InferredMeasurement& inferred) { inferred.posterior->fit->beyond = {"k"}; }},
           {"outliers", [](InferredMeasurement& inferred) { inferred.posterior->fit->outliers = {"x(1 s)"}; }},
-          {"clock_fault", [](InferredMeasurement& inferred) { inferred.clock_faults = {{}}; }},
+          {"clock_fault", [](InferredMeasurement& inferred) { inferred.nuisance = {Notice::kClockFault}; }},
           {"noise_larger", noise(3.0)},
           {"noise_smaller", noise(0.3)},
           {"noise_coloured",
@@ -280,6 +280,41 @@ TEST(StatusesBesideEachOther, HaveNoSegmentsShortenedWhereTheRecordingIsAtFault)
   inferred.fault = "x is 1000 times too large: divide it by 1000";
   EXPECT_EQ(makeInferenceTable(inferred, makeParameters(), makeFeatures()).find("--segments 1"),
             std::string::npos);
+}
+
+/// Of a kind that no other file knows.
+RecordingNuisance makeTurnedSensor() {
+  return {Notice::kClockFault, "turned", {"turn."}, {{"angle", 0.05, 1e-3}}, "the sensor is turned by 3 deg"};
+}
+
+TEST(StatusesBesideEachOther, NameTheNuisanceOfARecordingWhateverItIs) {
+  InferredMeasurement inferred = makeOfPosterior();
+  inferred.nuisance = makeTurnedSensor();
+  inferred.nuisance->sizes.push_back({"angle", 0.1, 2e-3, 4.0});
+  EXPECT_NE(makeInferenceTable(inferred, makeParameters(), makeFeatures())
+                .find("clock_fault: the sensor is turned by 3 deg; the intervals follow it"),
+            std::string::npos);
+  EXPECT_NE(makeInferenceJson(inferred, makeParameters(), makeFeatures())
+                .find(R"("turned":[{"angle":0.05,"sd":0.001},{"angle":0.1,"sd":0.002,"from":4.0}])"),
+            std::string::npos);
+}
+
+TEST(StatusesBesideEachOther, SayATermBesideANuisanceThatIsNotAlike) {
+  InferredMeasurement inferred = makeOfPosterior();
+  inferred.nuisance = makeTurnedSensor();
+  for (const char* term : {"turn.x", "coulomb.x"}) {
+    MissingTerm missing;
+    missing.term = term;
+    missing.share = 0.95;
+    missing.shifts = VectorXd::Zero(2);
+    missing.explains = true;
+    inferred.model_test = ModelTest{missing};
+    const bool is_said = makeInferenceTable(inferred, makeParameters(), makeFeatures())
+                             .find("or the model lacks " + missing.term) != std::string::npos;
+    EXPECT_EQ(is_said, missing.term == "coulomb.x") << term;
+    EXPECT_EQ(isSaid(inferred, "missing_term"), is_said) << term;
+    EXPECT_TRUE(isSaid(inferred, "clock_fault")) << term;
+  }
 }
 
 /// Noise that no status names, as no interval follows it.

@@ -12,7 +12,6 @@ class StampReader {
  public:
   explicit StampReader(std::string_view text) : rest_(text) {}
 
-  bool isOk() const { return ok_; }
   bool isDone() const { return ok_ && rest_.empty(); }
 
   /// A number of that many digits, within its limits.

@@ -1,4 +1,4 @@
-#include "framework/estimation/segments/state_elimination.hpp"
+#include "framework/inference/segments/state_elimination.hpp"
 
 #include <cmath>
 

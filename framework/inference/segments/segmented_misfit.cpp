@@ -1,4 +1,4 @@
-#include "framework/estimation/segments/segmented_misfit.hpp"
+#include "framework/inference/segments/segmented_misfit.hpp"
 
 #include <algorithm>
 #include <cmath>
