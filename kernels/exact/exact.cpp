@@ -66,6 +66,10 @@ void calcBoxMoments(int u, const double* precision, const double* shift, double*
                     double* covariance) {
   c::calc_box_moments(u, precision, shift, buffer, mean, covariance);
 }
+int countSearch(int r, int u, int m, int windows) {
+  return m + windows + r * (r + 1) / 2 + r * (2 * u + 4 + MOST_MINIMA) + u * (11 + 4 * MOST_MINIMA) +
+         u * u * (4 + 3 * MOST_MINIMA);
+}
 score_search layOutSearch(const score_problem& problem, void* owner, double* room) {
   return c::lay_out_search(&problem, owner, room);
 }

@@ -47,7 +47,9 @@ double calcLocalFactor(const smooth_process& process, const double* ratios, cons
 void calcBoxMoments(int u, const double* precision, const double* shift, double* buffer, double* mean,
                     double* covariance);
 
-/// A search with its buffers in a room of count_search() numbers; `problem` must outlive it. The caller fills
+/// How many numbers the buffers of a search for u unknowns take, with r scores, m variables.
+int countSearch(int r, int u, int m, int windows);
+/// A search with its buffers in a room of so many numbers; `problem` must outlive it. The caller fills
 /// in search.scores (r) and the known variables of search.at (m - u).
 score_search layOutSearch(const score_problem& problem, void* owner, double* room);
 /// Minima from the training simulations of most similar scores that are apart from each other.

@@ -14,7 +14,7 @@ static double *take(double **room, int count)
   return taken;
 }
 
-/* A search with its buffers in a room of count_search() numbers, which need no initialisation but search->scores
+/* A search with its buffers in a room of TWINMAP_SEARCH numbers, which need no initialisation but search->scores
    and the known variables of search->at. */
 static score_search lay_out_search(const score_problem *problem, void *owner, double *room)
 {

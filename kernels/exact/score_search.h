@@ -52,10 +52,3 @@ struct score_search {
   double *mean, *covariance, *noise_stddev; /* of the mixed minima: u, u x u, u */
   double *box_buffer;                    /* u (u + 3) */
 };
-
-/* Numbers of the room that a search takes. */
-static inline int count_search(int r, int u, int m, int windows)
-{
-  return m + windows + r * (r + 1) / 2 + r * (2 * u + 4 + MOST_MINIMA) + u * (11 + 4 * MOST_MINIMA) +
-         u * u * (4 + 3 * MOST_MINIMA);
-}

@@ -42,7 +42,7 @@ ScoreInversion::ScoreInversion(const ForwardSurrogate& surrogate, BoxPrior prior
       leading_(findLeadingScores(surrogate, prior_.count())),
       workspaces_(surrogate.windows.size()) {
   const exact::score_problem problem = describeProblem();
-  const int count = exact::count_search(problem.scores, problem.unknown, problem.variables, problem.windows);
+  const int count = exact::countSearch(problem.scores, problem.unknown, problem.variables, problem.windows);
   room_.resize(static_cast<std::size_t>(count));
   explanation_.prior = prior_.calcInformation();
 }

@@ -107,7 +107,7 @@ void addWindows(const ExportedModel& model, CTables& tables, CSizes& sizes) {
   sizes.push_back({"WINDOWS", static_cast<long>(entries.size()), "groups of scores"});
   const auto u = static_cast<int>(model.countUnknown()), m = static_cast<int>(forward.points.rows());
   const int search =
-      exact::count_search(static_cast<int>(forward.getScoreCount()), u, m, static_cast<int>(entries.size()));
+      exact::countSearch(static_cast<int>(forward.getScoreCount()), u, m, static_cast<int>(entries.size()));
   sizes.push_back({"SEARCH", search, "numbers of a search for the unknown"});
   sizes.push_back({"SLOPE_POINTS", static_cast<long>(slope_points), "most points with slopes"});
   sizes.push_back({"TERMS", static_cast<long>(terms), "most terms of a trend"});

@@ -45,12 +45,6 @@ TEST(CTables, BytesAreThoseOfTheStorage) {
             std::string::npos);
 }
 
-TEST(CTables, ALowerTriangleIsPackedColumnByColumn) {
-  Eigen::MatrixXd matrix(3, 3);
-  matrix << 1, 9, 9, 2, 4, 9, 3, 5, 6;
-  EXPECT_EQ(packLower(matrix), (Eigen::VectorXd(6) << 1, 2, 3, 4, 5, 6).finished());
-}
-
 TEST(RuntimeSources, NamesTakeThePrefixAndUnknownFilesAreRefused) {
   EXPECT_EQ(renameC("twinmap_infer(TWINMAP_OK)", "pump"), "pump_infer(PUMP_OK)");
   EXPECT_NE(getRuntimeSource("arithmetic.c").find("static inline double exponential"),

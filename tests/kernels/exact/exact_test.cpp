@@ -37,6 +37,12 @@ TEST(Exact, DotIsTheSumForEveryCountOfLanes) {
   }
 }
 
+TEST(Exact, ALowerTriangleIsPackedColumnByColumn) {
+  MatrixXd matrix(3, 3);
+  matrix << 1, 9, 9, 2, 4, 9, 3, 5, 6;
+  EXPECT_EQ(linalg::packColumns(matrix), (VectorXd(6) << 1, 2, 3, 4, 5, 6).finished());
+}
+
 TEST(Exact, PackedTrianglesAreSolved) {
   for (Index n : {1, 2, 5, 6, 31}) {
     const MatrixXd lower = linalg::calcCholesky(makePositiveDefinite(n)).lower;

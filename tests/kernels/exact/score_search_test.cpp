@@ -53,7 +53,7 @@ class Searching {
     problem_.training_scores = training_scores_.data();
     problem_.evaluate = evaluate;
     problem_.calc_stddev = calcStddev;
-    room_.resize(static_cast<std::size_t>(exact::count_search(kScores, u, u, 2)));
+    room_.resize(static_cast<std::size_t>(exact::countSearch(kScores, u, u, 2)));
     search_ = exact::layOutSearch(problem_, this, room_.data());
     std::copy_n(measured.data(), kScores, search_.scores);
   }
