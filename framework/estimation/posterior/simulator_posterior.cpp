@@ -64,6 +64,7 @@ void setDraws(const AdaptiveDraws& drawn, const Landscape& landscape, const LogC
   posterior.mean = importance::calcMean(draws);
   posterior.covariance = importance::calcCovariance(draws);
   posterior.stddev = posterior.covariance.diagonal().cwiseSqrt();
+  noteStddevs({posterior.stddev.begin(), posterior.stddev.end()});
   posterior.modes = findModes(drawn.draws.points, posterior.draws, posterior.weights,
                               projectBasins(landscape.basins, coordinates.getCount()), landscape.connected);
 }
@@ -164,7 +165,6 @@ SimulatorPosterior samplePosterior(const PosteriorProblem& problem, const Matrix
     const std::vector<ParameterSpec> kept(problem.unknown.begin(), problem.unknown.begin() + problem.drawn);
     setDraws(sampling.drawn, sampling.landscape, LogCoordinates(kept, sampling.plain), posterior);
     posterior.prior_stddev = whole.getPrior().calcStddevs().head(problem.drawn);
-    noteStddevs({posterior.stddev.begin(), posterior.stddev.end()});
     if (options.profiles && problem.drawn == surface.getDimensions() && problem.drawn <= kManyUnknown) {
       const SearchStage profiles("profiles of the likelihood");
       setProfiles(problem, whole, posterior);
