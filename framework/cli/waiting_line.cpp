@@ -39,7 +39,9 @@ WaitingLine::WaitingLine(std::string what, std::function<void()> at_interrupt)
   thread_ = std::thread([this] { renew(); });
 }
 
-void WaitingLine::describe(std::string what) {
+void WaitingLine::describe(std::string what, std::function<void()> at_interrupt) {
+  const std::lock_guard lock(mutex_);
+  at_interrupt_ = std::move(at_interrupt);
   stage_.reset();
   stage_.emplace(std::move(what));
 }

@@ -22,15 +22,15 @@ class WaitingLine {
   WaitingLine(const WaitingLine&) = delete;
   WaitingLine& operator=(const WaitingLine&) = delete;
 
-  /// What it is busy with from now on.
-  void describe(std::string what);
+  /// What it is busy with from now on. at_interrupt: in the place of the one before.
+  void describe(std::string what, std::function<void()> at_interrupt);
   /// Ends it; before anything else is printed.
   void clear();
 
  private:
   void renew();
 
-  const std::function<void()> at_interrupt_;
+  std::function<void()> at_interrupt_;
   std::optional<SearchStage> stage_;
   SearchLine line_;
   std::mutex mutex_;

@@ -156,21 +156,31 @@ class InferCommand {
     ++count_;
   }
 
-  /// before: windows that are finished, which an interrupt prints.
+  /// At an interrupt.
+  void printFinished(const InferredMeasurement& inferred) {
+    if (!inferred.source.empty()) {  // else it could not be used
+      printer_.print(inferred, source_.getReader().getExtractor().getInfos(), false);
+    }
+  }
+
+  /// before: windows that are finished, which an interrupt prints, and this one's answer, once it is known.
   InferredMeasurement inferWindow(const Table& table, Window& window,
                                   const std::vector<InferredMeasurement>& before) {
     const std::optional<double>& start = window.start;
-    WaitingLine waiting("infer " + nameWindow(table.source, start), [&] {
+    const auto print_finished = [&] {
       for (const InferredMeasurement& one : before) {
-        if (!one.source.empty()) {  // else it could not be used
-          printer_.print(one, source_.getReader().getExtractor().getInfos(), false);
-        }
+        printFinished(one);
       }
-    });
+    };
+    WaitingLine waiting("infer " + nameWindow(table.source, start), print_finished);
     InferredMeasurement inferred = session_->infer(table, start, known_);
     inferred.asked = describeAsked(table.source, start);
     if (tests_model_) {
-      waiting.describe("look for what the model lacks, " + nameWindow(table.source, start));
+      waiting.describe("look for what the model lacks, " + nameWindow(table.source, start),
+                       [&, answer = inferred] {
+                         print_finished();
+                         printFinished(answer);
+                       });
       window.recording = testModel(source_.getReader(), table, start, known_, inferred);
     }
     inferred.asked.diagnoses = window.recording && diagnoses_;

@@ -167,10 +167,26 @@ void inferTrial(const InferArguments& arguments, const MeasurementReader& reader
                 const Recording& recording) {
   DirectInference session(reader, findDraws(arguments).value_or(SimulatorPosteriorOptions{}.draws));
   const Eigen::VectorXd known = readKnown(arguments, reader);
+  const std::string window = nameWindow(recording.table->source, recording.start);
+  WaitingLine waiting("infer " + window);
   InferredMeasurement inferred = session.infer(*recording.table, recording.start, known);
-  testModel(reader, *recording.table, recording.start, known, inferred);
   inferred.asked = describeAsked(arguments);
+  waiting.describe("look for what the model lacks, " + window,
+                   [&, answer = inferred] { printInferred(arguments, answer, reader, session); });
+  testModel(reader, *recording.table, recording.start, known, inferred);
+  waiting.clear();
   printInferred(arguments, inferred, reader, session);
+}
+
+void printJoint(const InferArguments& arguments, const JointInference& inferred,
+                const std::vector<ParameterSpec>& parameters) {
+  if (arguments.json) {
+    std::cout << makeJointJson(inferred, parameters) << "\n";
+  } else if (arguments.csv) {
+    std::cout << makeInferenceCsvHeader(false, false) << makeJointCsvRows(inferred, parameters);
+  } else {
+    std::cout << makeJointTable(inferred, parameters);
+  }
 }
 
 }  // namespace
@@ -201,16 +217,11 @@ void inferJointly(const InferArguments& arguments) {
   WaitingLine waiting(fmt::format("infer from {} recordings", recordings.get().size()));
   JointInference inferred = inferrer.infer(recordings.get());
   inferred.asked = describeAsked(arguments, recordings.get());
-  waiting.describe("look for what the model lacks");
+  waiting.describe("look for what the model lacks",
+                   [&, answer = inferred] { printJoint(arguments, answer, inferrer.getParameters()); });
   testModel(findExperimentFile(arguments.run), recordings.get(), arguments.known, inferred);
   waiting.clear();
-  if (arguments.json) {
-    std::cout << makeJointJson(inferred, inferrer.getParameters()) << "\n";
-  } else if (arguments.csv) {
-    std::cout << makeInferenceCsvHeader(false, false) << makeJointCsvRows(inferred, inferrer.getParameters());
-  } else {
-    std::cout << makeJointTable(inferred, inferrer.getParameters());
-  }
+  printJoint(arguments, inferred, inferrer.getParameters());
 }
 
 }  // namespace twinmap::cli
