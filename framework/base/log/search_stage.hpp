@@ -34,8 +34,7 @@ std::string describeState(const SearchState& state);
 /// "0:42", "1:02:03".
 std::string describeDuration(double seconds);
 
-/// "k = 14.2, m = 3.01", or with standard deviations "k = 14.2 (sd 0.3), m = 3.01 (sd 0.02)": of the best
-/// fit;
+/// Of the best fit "k = 14.2, m = 3.01", or with standard deviations "k = 14.2 (sd 0.3), m = 3.01 (sd 0.02)";
 /// "" of none.
 std::string describeBest(const SearchState& state);
 

@@ -21,7 +21,8 @@ class LanePrograms {
 
   const LaneModel& getValues() const { return *values_; }
 
-  /// With the derivatives with respect to all parameters; compiled when first asked for, by any thread.
+  /// With the derivatives by all parameters of which they are asked for; compiled when first asked for, by
+  /// any thread.
   const LaneModel& getDerivatives(const SystemNames& names);
 
   /// Of compileStiff(); likewise.

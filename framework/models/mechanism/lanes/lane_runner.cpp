@@ -184,11 +184,11 @@ class LaneRunner::Impl : public lanes::SampleStream {
       return;
     }
     responses_->col(column).tail(rows) = calcModes(point);
-    constexpr double kStep = 1e-5;  // of the bounds' width: rounding and truncation are then both about 1e-10
-    const VectorXd widths = calcWidths(collectSampled(spec_));
     if (derivatives_ == nullptr) {
       return;
     }
+    constexpr double kStep = 1e-5;  // of the bounds' width: rounding and truncation are then both about 1e-10
+    const VectorXd widths = calcWidths(collectSampled(spec_));
     for (const int k : model_.directions) {
       VectorXd above = point, below = point;
       above[k] += kStep * widths[k];
@@ -219,10 +219,10 @@ class LaneRunner::Impl : public lanes::SampleStream {
   void takeDerivatives(Index column, SampleStatus& status) {
     const Index p = parameters_->rows(), rows = getOutputRows(), asked = model_.countDirections();
     const MatrixXd recorded = output_derivatives_.col(column).reshaped(getRecordedRows(), asked);
-    MatrixXd shown = recorded.topRows(rows);
-    subtractBefore(model_.sampling.subtracted, task_.layout.times.size(), recorded, shown);
     auto derivatives = derivatives_->middleCols(column * p, p);
-    derivatives.topRows(rows)(Eigen::all, model_.directions) = shown;
+    auto along = derivatives(Eigen::all, model_.directions);
+    along.topRows(rows) = recorded.topRows(rows);
+    subtractBefore(model_.sampling.subtracted, task_.layout.times.size(), recorded, along);
     for (Index row = 0; row < rows; ++row) {
       const Bounds* range = findRange(spec_, task_.layout, row);
       if (range != nullptr && isClipped(*range, (*responses_)(row, column))) {

@@ -24,7 +24,7 @@ LaneStart::LaneStart(const ModelSpec& spec, const LaneModel& model, const Vector
 }
 
 void LaneStart::fill(const Parameters& parameters, lanes::Sample& sample) {
-  // the values, then their derivatives with respect to each parameter
+  // the values, then their derivatives along each direction
   const MatrixXd all = calcStart(parameters)
                            .reshaped(model_.start.outputs.size() / (1 + model_.directions.size()),
                                      1 + model_.countDirections());
